@@ -12,9 +12,11 @@
 
 #include "compiler/format/format.h"
 #include "runtime/assets/mujoco.h"
+#include "runtime/assets/mujoco_seen.h"
 #include "runtime/assets/output_folder.h"
 #include "runtime/base/file.h"
 #include "runtime/compile/files.h"
+#include "runtime/libero/rooms.h"
 #include "runtime/libero/suite_text.h"
 
 namespace probe::libero {
@@ -57,6 +59,28 @@ std::optional<Path> find_model(const Path& assets, const std::string& category) 
   return std::nullopt;
 }
 
+// Files below robosuite's assets, and which of our meshes shows a body of theirs.
+struct RobotFile {
+  const char* file;
+  std::map<std::string, std::string> links;
+};
+const RobotFile kRobotFiles[] = {
+    {"robots/panda/robot.xml",
+     {{"link0", "link0.glb"},
+      {"link1", "link1.glb"},
+      {"link2", "link2.glb"},
+      {"link3", "link3.glb"},
+      {"link4", "link4.glb"},
+      {"link5", "link5.glb"},
+      {"link6", "link6.glb"},
+      {"link7", "link7.glb"}}},
+    {"grippers/panda_gripper.xml",
+     {{"right_gripper", "hand.glb"},
+      {"leftfinger", "left_finger.glb"},
+      {"rightfinger", "right_finger.glb"}}},
+    {"mounts/rethink_mount.xml", {{"pedestal", "mount.glb"}, {"torso", "mount.glb"}}},
+};
+
 class LiberoImport {
  public:
   LiberoImport(const ImportOptions& options, assets::OutputFolder out)
@@ -86,6 +110,7 @@ class LiberoImport {
     if (!options_.poses.empty()) PROBE_TRY(read_poses());
     for (const Suite& suite : suites()) PROBE_TRY(read_suite(suite));
     PROBE_TRY(convert_things());
+    PROBE_TRY(convert_rooms());
     PROBE_TRY(write_things());
     PROBE_TRY(take_robots());
     for (auto& [suite, tasks] : tasks_) PROBE_TRY(write_one(*suite, tasks));
@@ -277,6 +302,30 @@ class LiberoImport {
     return {};
   }
 
+  // The rooms of scenes that tasks play in; a scene whose room cannot be made has none.
+  Status convert_rooms() {
+    std::set<std::string_view> wanted;
+    for (const auto& [suite, tasks] : tasks_) {
+      for (const TaskSource& task : tasks) wanted.insert(scene_of_class(task.problem));
+    }
+    for (const Room& room : rooms()) {
+      if (!wanted.contains(room.scene)) continue;
+      const auto made = make_room(room, assets_.string(), base_);
+      if (!made) {
+        say("missing", fmt::format("{} has no room, black is behind its things: {}", room.scene,
+                                   shorter(to_text(made.failure()))));
+        continue;
+      }
+      for (const assets::MujocoFile& file : made->files)
+        PROBE_TRY(write(file.path, file.bytes, shorter(file.source)));
+      for (const std::string& note : made->notes) odd_.insert(shorter(note));
+      rooms_.insert(std::string(room.scene));
+      say("room",
+          fmt::format("{}: {}", room.scene, shorter((assets_ / "scenes" / room.file).string())));
+    }
+    return {};
+  }
+
   // The category of a task that is lacking.
   std::optional<std::string> lack_of(const TaskSource& task) const {
     for (const auto* things : {&task.problem.objects, &task.problem.fixtures}) {
@@ -320,7 +369,7 @@ class LiberoImport {
       whole.push_back(std::move(task));
     }
     if (whole.empty()) return {};
-    PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, poses_));
+    PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, rooms_, poses_));
     const std::string path = std::string(suite.folder) + ".probe";
     const std::string problems = "bddl_files/" + std::string(suite.folder);
     for (const SuiteText::Table& table : text.tables)
@@ -417,7 +466,12 @@ class LiberoImport {
         "# The benchmark's things: how they look, weigh and feel is in their files; colours, facts "
         "and phrases are yours to "
         "say.\n";
+    if (!rooms_.empty()) text += "use \"suite/libero/stage.probe\"\n";
     for (const auto& [category, declaration] : declarations_) text += "\n" + declaration;
+    if (!rooms_.empty()) text += "\n# ---- rooms ----\n";
+    for (const std::string& scene : rooms_)
+      text +=
+          fmt::format("scene {} like {} {{ backdrop \"{}\" }}\n", with_room(scene), scene, scene);
     text += "\n# ---- as tasks call them ----\n";
     for (const auto& [name, category] : instances_) {
       if (things_.contains(category))
@@ -427,7 +481,7 @@ class LiberoImport {
     return {};
   }
 
-  // The robots are ours: their meshes are not the benchmark's.
+  // The robots are ours, with the benchmark's meshes where its files are there.
   Status take_robots() {
     const Path robots = Path(options_.own) / "robots/panda";
     std::vector<Path> files;
@@ -439,12 +493,37 @@ class LiberoImport {
     if (files.empty())
       return Failure{Fault::kAsset, "our own robots are not there", robots.string()};
     std::ranges::sort(files);
+    const std::map<std::string, std::string> seen = robot_meshes();
     for (const Path& file : files) {
+      const std::string to = file.lexically_relative(options_.own).generic_string();
+      if (const auto made = seen.find(file.filename().string()); made != seen.end()) {
+        PROBE_TRY(write(to, made->second, "robosuite"));
+        continue;
+      }
       PROBE_ASSIGN(const std::string bytes, read_file(file.string()));
-      PROBE_TRY(
-          write(file.lexically_relative(options_.own).generic_string(), bytes, "vlaprobe's own"));
+      PROBE_TRY(write(to, bytes, "vlaprobe's own"));
     }
     return {};
+  }
+
+  // What robosuite shows of the arm, the gripper and the mount, by the name of our file. Its bodies
+  // and our links have the same frames.
+  std::map<std::string, std::string> robot_meshes() {
+    std::map<std::string, std::string> made;
+    const Path robosuite = Path(base_).parent_path();
+    for (const auto& [file, links] : kRobotFiles) {
+      std::vector<std::string> notes;
+      const auto seen = assets::seen_bodies((robosuite / file).string(), base_, links, notes);
+      if (!seen) {
+        say("missing", fmt::format("{}: vlaprobe's own meshes are shown instead: {}", file,
+                                   to_text(seen.failure())));
+        continue;
+      }
+      for (const std::string& note : notes) odd_.insert(note);
+      made.insert(seen->begin(), seen->end());
+      say("robot", file);
+    }
+    return made;
   }
 
   const ImportOptions& options_;
@@ -456,6 +535,7 @@ class LiberoImport {
   std::vector<std::pair<const Suite*, std::vector<TaskSource>>> tasks_;
   Things things_;
   std::map<std::string, std::string> declarations_, instances_, lacking_;
+  std::set<std::string> rooms_;  // scenes that have theirs
   std::set<std::string> odd_;
 };
 

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "runtime/libero/goal.h"
+#include "runtime/libero/rooms.h"
 
 namespace probe::libero {
 namespace {
@@ -51,8 +52,9 @@ struct Placed {
 
 class SuiteWriter {
  public:
-  SuiteWriter(const Suite& suite, const Things& things, const std::vector<FixturePose>& poses)
-      : suite_(suite), things_(things), poses_(poses) {}
+  SuiteWriter(const Suite& suite, const Things& things, const std::set<std::string>& rooms,
+              const std::vector<FixturePose>& poses)
+      : suite_(suite), things_(things), rooms_(rooms), poses_(poses) {}
 
   Result<SuiteText> write(const std::vector<TaskSource>& tasks) {
     std::string body;
@@ -194,8 +196,10 @@ class SuiteWriter {
                            cm(x0 + row->x), cm(y0 + row->y), cm(row->regions - kHalfSite),
                            cm(x1 + row->x), cm(y1 + row->y), cm(row->regions + kHalfSite));
     }
+    const std::string bare(row->scene);
+    const std::string base = rooms_.contains(bare) ? with_room(bare) : bare;
     if (lines.empty()) {
-      stage.scene = row->scene;
+      stage.scene = base;
       return {};
     }
     const std::string key = std::string(row->scene) + " " + scene_of(task.stem) + "\n" + lines;
@@ -204,7 +208,7 @@ class SuiteWriter {
       const std::string said = scene_of(task.stem);
       const std::string_view plain = row->scene.substr(row->scene.find('_') + 1);
       at->second = free_name(said.empty() ? fmt::format("{}_{}", suite_.folder, plain) : said);
-      body += fmt::format("scene {} like {} {{\n{}}}\n\n", at->second, row->scene, lines);
+      body += fmt::format("scene {} like {} {{\n{}}}\n\n", at->second, base, lines);
     }
     stage.scene = at->second;
     return {};
@@ -459,6 +463,7 @@ class SuiteWriter {
 
   const Suite& suite_;
   const Things& things_;
+  const std::set<std::string>& rooms_;
   const std::vector<FixturePose>& poses_;
   SuiteText out_;
   std::vector<std::string> names_;
@@ -470,8 +475,14 @@ class SuiteWriter {
 }  // namespace
 
 Result<SuiteText> write_suite(const Suite& suite, const std::vector<TaskSource>& tasks,
-                              const Things& things, const std::vector<FixturePose>& poses) {
-  return SuiteWriter(suite, things, poses).write(tasks);
+                              const Things& things, const std::set<std::string>& rooms,
+                              const std::vector<FixturePose>& poses) {
+  return SuiteWriter(suite, things, rooms, poses).write(tasks);
+}
+
+std::string_view scene_of_class(const BddlProblem& problem) {
+  const auto row = std::ranges::find(kScenes, problem.problem_class, &SceneRow::problem_class);
+  return row == std::end(kScenes) ? std::string_view() : row->scene;
 }
 
 }  // namespace probe::libero

@@ -1,7 +1,9 @@
 // A suite of LIBERO as a Probe text and tables of starts. Reads no file and knows no model.
 #pragma once
 
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -36,10 +38,14 @@ struct SuiteText {
   std::vector<std::string> notes;  // what is odd, a line each
 };
 
-// The tasks in the order of their numbers; all their categories are in `things`. The same bytes for
-// the same input. Fails (kUsage, where = the problem's file) on a problem class, a region or a
-// joint that is not known.
+// The tasks in the order of their numbers; all their categories are in `things`; `rooms`: scenes
+// that have theirs (rooms.h). The same bytes for the same input. Fails (kUsage, where = the
+// problem's file) on a problem class, a region or a joint that is not known.
 Result<SuiteText> write_suite(const Suite& suite, const std::vector<TaskSource>& tasks,
-                              const Things& things, const std::vector<FixturePose>& poses);
+                              const Things& things, const std::set<std::string>& rooms,
+                              const std::vector<FixturePose>& poses);
+
+// The scene of suite/libero/stage.probe that a problem plays in; empty: its class is not known.
+std::string_view scene_of_class(const BddlProblem& problem);
 
 }  // namespace probe::libero

@@ -80,6 +80,36 @@ struct LiberoFolder {
   }
 };
 
+// One grey pixel, PNG.
+constexpr const char* kPixel =
+    "89504e470d0a1a0a0000000d4948445200000001000000010802000000907753de0000000c494441"
+    "54789c636898b00000034401b17ad736140000000049454e44ae426082";
+
+// The kitchen's arena as the benchmark writes it, but for what stands in it.
+void write_kitchen(const LiberoFolder& folder) {
+  std::string table;
+  for (const char* name :
+       {"table_leg1_visual", "table_leg2_visual", "table_leg3_visual", "table_leg4_visual"})
+    table += std::string(
+                 "<geom type=\"cylinder\" size=\"0.05 0.1\" contype=\"0\" conaffinity=\"0\" "
+                 "group=\"1\" name=\"") +
+             name + "\"/>";
+  folder.write("assets/scenes/libero_kitchen_tabletop_base_style.xml",
+               R"(<mujoco model="arena"><asset>
+      <texture name="texplane" type="2d" file="../textures/other.png"/>
+      <texture name="tex-wall" type="2d" file="../textures/other.png"/>
+      <material name="floorplane" texture="texplane" texrepeat="3 3" texuniform="true"/></asset>
+      <worldbody><geom name="floor" type="plane" size="3 3 .125" material="floorplane" group="1"/>
+      <body name="table" pos="0 0 0.4">
+        <geom name="table_collision" type="box" size="0.4 0.4 0.4" group="0"/>
+        <geom name="table_visual" type="box" size="0.4 0.4 0.4" contype="0" conaffinity="0" group="1"/>)" +
+                   table + "</body></worldbody></mujoco>");
+  const auto pixel = test::from_hex(kPixel);
+  for (const char* name : {"gray_ceramic_tile", "yellow_linen_wall_texture"})
+    folder.write(std::string("assets/textures/") + name + ".png",
+                 {reinterpret_cast<const char*>(pixel.data()), pixel.size()});
+}
+
 std::string text_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -111,6 +141,31 @@ Compilation compiled(const fs::path& folder, const std::string& file) {
 }
 
 }  // namespace
+
+TEST_CASE("a scene has its room where the arena is there, and a line where it is not") {
+  const LiberoFolder folder;
+  const auto bare = folder.import();
+  REQUIRE_MESSAGE(bare.ok(), to_text(bare.failure()));
+  CHECK(said_by(*bare, "missing").find("libero_kitchen has no room") != std::string::npos);
+  CHECK(said_by(*bare, "missing").find("robots/panda/robot.xml: vlaprobe's own meshes") !=
+        std::string::npos);
+  CHECK(text_of(folder.root / "out/libero_90.probe").find("_room") == std::string::npos);
+  write_kitchen(folder);
+  const auto report = folder.import();
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(said_by(*report, "room") ==
+        "libero_kitchen: assets/scenes/libero_kitchen_tabletop_base_style.xml\n");
+  CHECK(said_by(*report, "missing").find("no room") == std::string::npos);
+  CHECK(text_of(folder.root / "out/things.probe")
+            .find("scene libero_kitchen_room like libero_kitchen {") != std::string::npos);
+  CHECK(text_of(folder.root / "out/libero_90.probe").find("like libero_kitchen_room") !=
+        std::string::npos);
+  const std::string seen = text_of(folder.root / "out/scenes/libero_kitchen/visual.glb");
+  CHECK(seen.starts_with("glTF"));
+  const Compilation built = compiled(folder.root / "out", "libero_90.probe");
+  INFO(render_text(built.diagnostics, built.sources));
+  CHECK(built.ok);
+}
 
 TEST_CASE("a task is imported: its words, its goal, where things begin") {
   const LiberoFolder folder;
