@@ -147,6 +147,17 @@ class BddlReader {
     (this->*known->read)(section);
   }
 
+  // Names go into texts as they are: letters, digits and `_`, a letter first.
+  void check_spelling(const Sexpr& word) {
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+    const bool is_spelt = !word.word.empty() && is_letter(word.word.front()) &&
+                          std::ranges::all_of(word.word, [&](char c) {
+                            return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+                          });
+    if (!is_spelt)
+      wrong(word.spot, shown(word) + " is no name: letters, digits and `_`, a letter first");
+  }
+
   // The only word behind the head; reported where there is another number of them.
   std::optional<std::string> only_word(const Sexpr& list) {
     if (list.items.size() == 2 && !tree_.at(list.items[1]).is_list)
@@ -188,6 +199,7 @@ class BddlReader {
         return;
       }
       if (word.word != "-") {
+        check_spelling(word);
         things.push_back({in_lower_case(word.word), {}, word.spot});
         continue;
       }
@@ -196,7 +208,8 @@ class BddlReader {
         wrong(word.spot, "expected `name - category`");
         return;
       }
-      const std::string category = in_lower_case(tree_.at(section.items[++i]).word);
+      check_spelling(tree_.at(section.items[++i]));
+      const std::string category = in_lower_case(tree_.at(section.items[i]).word);
       for (; named < things.size(); ++named) things[named].category = category;
     }
     for (; named < things.size(); ++named)
@@ -224,6 +237,7 @@ class BddlReader {
         wrong(node.spot, "expected `(name (:target ..) ..`, found " + shown(node));
         continue;
       }
+      check_spelling(tree_.at(node.items[0]));
       BddlRegion region;
       region.spot = node.spot;
       region.own = in_lower_case(own);
@@ -294,8 +308,12 @@ class BddlReader {
     double value = 0;
     const char* const end = node.word.data() + node.word.size();
     const auto [at, error] = std::from_chars(node.word.data(), end, value);
-    if (!node.is_list && error == std::errc() && at == end && std::isfinite(value)) return value;
-    wrong(node.spot, "expected a number, found " + shown(node));
+    const bool is_number = !node.is_list && error == std::errc() && at == end;
+    // Metres and radians.
+    constexpr double kFarthest = 1000;
+    if (is_number && std::abs(value) <= kFarthest) return value;
+    wrong(node.spot, "expected a number" + std::string(is_number ? " from -1000 to 1000" : "") +
+                         ", found " + shown(node));
     return std::nullopt;
   }
 
@@ -323,6 +341,11 @@ class BddlReader {
       }
       fact.arguments.push_back(in_lower_case(word.word));
     }
+    if (fact.arguments.size() == 2 && fact.arguments[0] == fact.arguments[1]) {
+      wrong(node.spot, "`" + fact.predicate + "` says of `" +
+                           printable(fact.arguments[0], kLongestShown) + "` how it is to itself");
+      return std::nullopt;
+    }
     if (fact.arguments.size() == known->arguments) return fact;
     wrong(node.spot, fmt::format("`{}` takes {} name{}, found {}", fact.predicate, known->arguments,
                                  known->arguments == 1 ? "" : "s", fact.arguments.size()));
@@ -343,7 +366,13 @@ class BddlReader {
     }
     const Sexpr& all = tree_.at(section.items[1]);
     for (std::size_t i = 1; i < all.items.size(); ++i) {
-      if (auto fact = fact_of(tree_.at(all.items[i]))) problem_.goal.push_back(std::move(*fact));
+      auto fact = fact_of(tree_.at(all.items[i]));
+      if (!fact) continue;
+      const bool is_said = std::ranges::any_of(problem_.goal, [&](const BddlFact& one) {
+        return one.predicate == fact->predicate && one.arguments == fact->arguments;
+      });
+      if (is_said) odd(fact->spot, "the goal wants the same twice");
+      if (!is_said) problem_.goal.push_back(std::move(*fact));
     }
     if (all.items.size() == 1) wrong(all.spot, "the goal wants nothing");
   }
@@ -352,6 +381,14 @@ class BddlReader {
 
   void check_names() {
     std::set<std::string, std::less<>> things, regions;
+    const BddlRegion* on_table = nullptr;
+    for (const BddlRegion& region : problem_.regions) {
+      if (region.ranges.empty()) continue;
+      if (on_table == nullptr) on_table = &region;
+      if (region.target != on_table->target)
+        wrong(region.spot, "`:ranges` are of `" + region.target + "` and of `" + on_table->target +
+                               "`: a problem has one table or floor");
+    }
     for (const auto* list : {&problem_.fixtures, &problem_.objects}) {
       for (const BddlThing& thing : *list) {
         if (!things.insert(thing.name).second)

@@ -113,6 +113,21 @@ TEST_CASE("numbers and lists that are none are told") {
         "t.bddl:19:5: expected `name - category`\n");
 }
 
+TEST_CASE("what no text of ours could say is told where it stands") {
+  CHECK(mistakes_in(changed("lid_1 - lid", "lid-1 - lid")) ==
+        "t.bddl:19:5: `lid-1` is no name: letters, digits and `_`, a letter first\n");
+  CHECK(mistakes_in(changed("lid_1 - lid", "lid_1 - a,b")) ==
+        "t.bddl:19:13: `a,b` is no name: letters, digits and `_`, a letter first\n");
+  CHECK(mistakes_in(changed("(-0.1 0 -0.05 0.05)", "(-0.1 0 1e300 1e300)"))
+            .find("t.bddl:7:25: expected a number from -1000 to 1000, found `1e300`\n") == 0);
+  CHECK(mistakes_in(changed("(On cup_1 bench_cup_region)", "(On cup_1 cup_1)")) ==
+        "t.bddl:22:5: `on` says of `cup_1` how it is to itself\n");
+  CHECK(mistakes_in(changed("(drawer (:target chest_1))",
+                            "(drawer (:target chest_1) (:ranges ((0 0 1 1))))")) ==
+        "t.bddl:13:5: `:ranges` are of `chest_1` and of `bench`: a problem has one table or "
+        "floor\n");
+}
+
 TEST_CASE("several mistakes are told at once, in their order") {
   std::string text = changed("(Open chest", "(Opne chest");
   text.replace(text.find("-0.05 0.05"), 10, "-0.05 what");
@@ -130,6 +145,11 @@ TEST_CASE("what does no harm is told apart") {
   REQUIRE(read.oddities.size() == 1);
   CHECK(to_text(read.oddities[0]) ==
         "t.bddl:13:32: region `left_region` is of `drainer_1`, which the problem does not have");
+  const BddlRead twice = read_bddl(
+      changed("(Close chest_1_drawer)", "(Close chest_1_drawer) (Close chest_1_drawer)"), "t.bddl");
+  CHECK(twice.problem.goal.size() == 2);
+  REQUIRE(twice.oddities.size() == 1);
+  CHECK(to_text(twice.oddities[0]).find("the goal wants the same twice") != std::string::npos);
 }
 
 }  // namespace probe::libero
