@@ -16,8 +16,10 @@
 #include "runtime/assets/output_folder.h"
 #include "runtime/base/file.h"
 #include "runtime/compile/files.h"
+#include "runtime/libero/probing_text.h"
 #include "runtime/libero/rooms.h"
 #include "runtime/libero/suite_text.h"
+#include "runtime/libero/words.h"
 
 namespace probe::libero {
 namespace {
@@ -114,6 +116,7 @@ class LiberoImport {
     PROBE_TRY(write_things());
     PROBE_TRY(take_robots());
     for (auto& [suite, tasks] : tasks_) PROBE_TRY(write_one(*suite, tasks));
+    PROBE_TRY(write_asked());
     if (report_.tasks == 0) {
       return Failure{Fault::kUsage, "no task can be read: " + report_.lines.front().text,
                      options_.from};
@@ -369,7 +372,7 @@ class LiberoImport {
       whole.push_back(std::move(task));
     }
     if (whole.empty()) return {};
-    PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, rooms_, poses_));
+    PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, rooms_, poses_, taken_));
     const std::string path = std::string(suite.folder) + ".probe";
     const std::string problems = "bddl_files/" + std::string(suite.folder);
     for (const SuiteText::Table& table : text.tables)
@@ -381,13 +384,55 @@ class LiberoImport {
     PROBE_TRY(write_text(path, with_reasons(text.text, reasons), problems));
     --report_.files;
     for (const std::string& note : text.notes) odd_.insert(note);
+    written_.emplace_back(suite.folder);
+    for (std::size_t i = 0; i < whole.size(); ++i)
+      asked_.push_back({text.tasks[i], instruction_of(whole[i].stem), std::move(whole[i].problem)});
     say("suite", fmt::format("{}: {} tasks, {} starts", suite.folder, whole.size(), starts));
     report_.tasks += whole.size();
     report_.starts += starts;
     return {};
   }
 
-  // By task and word of @allow.
+  // All tasks together, asked what the benchmark does not ask.
+  Status write_asked() {
+    std::size_t all = 0;
+    for (const Suite& suite : suites()) all += suite.tasks;
+    if (asked_.size() != all) {
+      say("missing",
+          fmt::format("probing.probe, which asks all {} tasks: {} are there", all, asked_.size()));
+      return {};
+    }
+    const SuiteText text = write_probing(written_, asked_, things_);
+    for (const SuiteText::Table& table : text.tables)
+      PROBE_TRY(write(table.path, table.text, "init_files"));
+    PROBE_TRY(write_allowed("probing.probe", text.text));
+    return write_allowed("clean.probe", write_clean(written_, asked_));
+  }
+
+  // With an @allow above each declaration of which a check says something.
+  Status write_allowed(const std::string& path, const std::string& text) {
+    PROBE_TRY(write_text(path, text, "bddl_files"));
+    // One thing is said once of many tasks: what is allowed of some may then be said of others.
+    constexpr int kRounds = 4;
+    Reasons reasons;
+    for (int round = 0; round < kRounds; ++round) {
+      PROBE_ASSIGN(const Reasons more, reasons_in(path));
+      if (more.empty()) break;
+      for (const auto& [declaration, said] : more) {
+        for (const auto& [slug, why] : said) {
+          std::string& reason = reasons[declaration][slug];
+          reason += (reason.empty() ? "" : "; ") + why;
+        }
+      }
+      PROBE_TRY(write_text(path, with_reasons(text, reasons), "bddl_files"));
+      --report_.files;
+    }
+    return {};
+  }
+
+  static constexpr std::string_view kBegins[] = {"task ", "variants of ", "variant "};
+
+  // By declaration, "task NAME", and word of @allow.
   using Reasons = std::map<std::string, std::map<std::string, std::string>>;
 
   // What a check says of the tasks of a text that was written.
@@ -400,7 +445,9 @@ class LiberoImport {
     Reasons reasons;
     for (const Diagnostic& said : checked.diagnostics.items()) {
       const CodeInfo& code = info(said.code);
-      const auto task = task_around(checked.sources, said.primary);
+      const bool is_here = !said.primary.is_none() &&
+                           checked.sources.file(said.primary.file).name().ends_with("/" + path);
+      const auto task = is_here ? task_around(checked.sources, said.primary) : std::nullopt;
       if (said.severity == Severity::kError || code.slug.empty() || !task) {
         odd_.insert(fmt::format("{}: {}: {}", path, code.text, said.message));
         continue;
@@ -411,18 +458,27 @@ class LiberoImport {
     return reasons;
   }
 
-  // The task in whose declaration something stands: the last one that begins before it.
+  // The task in whose declaration something stands, or whose variants: the last ones that begin
+  // before it.
   static std::optional<std::string> task_around(const SourceSet& sources, const Span& span) {
     if (span.is_none()) return std::nullopt;
-    const std::string_view before = sources.file(span.file).text().substr(0, span.begin);
-    const std::size_t at = before.rfind("\ntask ");
-    if (at == before.npos) return std::nullopt;
-    const std::size_t name = at + 6;
-    return std::string(before.substr(name, before.find(' ', name) - name));
+    const std::string_view text = sources.file(span.file).text();
+    const std::string_view before = text.substr(0, span.begin);
+    std::optional<std::string> found;
+    std::size_t last = 0;
+    for (const std::string_view begin : kBegins) {
+      const std::size_t at = before.rfind(fmt::format("\n{}", begin));
+      if (at == before.npos || at < last) continue;
+      last = at;
+      const std::size_t name = at + 1 + begin.size();
+      found = std::string(begin) + std::string(text.substr(name, text.find(' ', name) - name));
+    }
+    return found;
   }
 
   // Without the marks that a text's string cannot hold, and without the task that it stands above.
-  static std::string plain(std::string message, const std::string& task) {
+  static std::string plain(std::string message, const std::string& declaration) {
+    const std::string task = declaration.substr(declaration.rfind(' ') + 1);
     for (const std::string& tail : {" of `" + task + "`", " in `" + task + "`"}) {
       if (const std::size_t at = message.find(tail); at != message.npos)
         message.erase(at, tail.size());
@@ -438,12 +494,12 @@ class LiberoImport {
     while (from < text.size()) {
       const std::size_t end = std::min(text.find('\n', from), text.size() - 1) + 1;
       const std::string_view line = std::string_view(text).substr(from, end - from);
-      if (line.starts_with("task ")) {
-        const auto known = reasons.find(std::string(line.substr(5, line.find(' ', 5) - 5)));
-        if (known != reasons.end()) {
-          for (const auto& [slug, why] : known->second)
-            out += fmt::format("@allow({}, \"the benchmark's own: {}\")\n", slug, why);
-        }
+      for (const std::string_view begin : kBegins) {
+        if (!line.starts_with(begin)) continue;
+        const auto known = reasons.find(std::string(line.substr(0, line.find(' ', begin.size()))));
+        if (known == reasons.end()) continue;
+        for (const auto& [slug, why] : known->second)
+          out += fmt::format("@allow({}, \"the benchmark's own: {}\")\n", slug, why);
       }
       out += line;
       from = end;
@@ -462,12 +518,18 @@ class LiberoImport {
   }
 
   Status write_things() {
-    std::string text =
-        "# The benchmark's things: how they look, weigh and feel is in their files; colours, facts "
-        "and phrases are yours to "
-        "say.\n";
+    std::string text = std::string text =
+        "# The benchmark's things: how they look, weigh and feel is in their files, what their "
+        "names "
+        "prove is said with them; more facts and phrases are yours to say.\n"
+        "use \"suite/libero/words.probe\"\n";
     if (!rooms_.empty()) text += "use \"suite/libero/stage.probe\"\n";
-    for (const auto& [category, declaration] : declarations_) text += "\n" + declaration;
+    const auto is_there = [&](std::string_view name) {
+      const auto known = instances_.find(std::string(name));
+      return known != instances_.end() && things_.contains(known->second);
+    };
+    for (const auto& [category, declaration] : declarations_)
+      text += "\n" + described(category, declaration, is_there);
     if (!rooms_.empty()) text += "\n# ---- rooms ----\n";
     for (const std::string& scene : rooms_)
       text +=
@@ -536,6 +598,9 @@ class LiberoImport {
   Things things_;
   std::map<std::string, std::string> declarations_, instances_, lacking_;
   std::set<std::string> rooms_;  // scenes that have theirs
+  std::set<std::string> taken_;  // names of fixtures and scenes
+  std::vector<std::string> written_;
+  std::vector<AskedTask> asked_;
   std::set<std::string> odd_;
 };
 

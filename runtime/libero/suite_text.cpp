@@ -53,8 +53,8 @@ struct Placed {
 class SuiteWriter {
  public:
   SuiteWriter(const Suite& suite, const Things& things, const std::set<std::string>& rooms,
-              const std::vector<FixturePose>& poses)
-      : suite_(suite), things_(things), rooms_(rooms), poses_(poses) {}
+              const std::vector<FixturePose>& poses, std::set<std::string>& taken)
+      : suite_(suite), things_(things), rooms_(rooms), poses_(poses), taken_(taken) {}
 
   Result<SuiteText> write(const std::vector<TaskSource>& tasks) {
     std::string body;
@@ -112,6 +112,7 @@ class SuiteWriter {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
     names_.push_back(name);
+    out_.tasks.push_back({id, name, std::string(stage.row->scene), out_.tables.back().text, goal});
     const std::string instruction = instruction_of(task.stem);
     std::string other = task.problem.language;
     for (char& c : other) {
@@ -434,6 +435,7 @@ class SuiteWriter {
 
   static std::string number(double value) { return fmt::format("{}", value + 0.0); }
 
+  // Who fills a role stands there by that, so that in a variant another thing can take the place.
   std::string table_of(const TaskSource& task, const Stage& stage) const {
     std::string text = "start,object,x_m,y_m,z_m,qw,qx,qy,qz,value\n";
     for (std::size_t i = 0; i < task.states.starts.size(); ++i) {
@@ -443,7 +445,7 @@ class SuiteWriter {
       };
       for (std::size_t k = 0; k < start.objects.size(); ++k) {
         const StatePose& pose = start.objects[k];
-        text += fmt::format("{},{}", i, task.problem.objects[k].name);
+        text += fmt::format("{},{}", i, said(stage, task.problem.objects[k].name));
         for (const double value : pose.position) text += "," + number(value);
         for (const double value : pose.rotation) text += "," + number(value);
         text += ",\n";
@@ -469,15 +471,15 @@ class SuiteWriter {
   std::vector<std::string> names_;
   std::map<Placed, std::string> fixtures_;
   std::map<std::string, std::string> scenes_;
-  std::set<std::string> taken_;
+  std::set<std::string>& taken_;
 };
 
 }  // namespace
 
 Result<SuiteText> write_suite(const Suite& suite, const std::vector<TaskSource>& tasks,
                               const Things& things, const std::set<std::string>& rooms,
-                              const std::vector<FixturePose>& poses) {
-  return SuiteWriter(suite, things, rooms, poses).write(tasks);
+                              const std::vector<FixturePose>& poses, std::set<std::string>& taken) {
+  return SuiteWriter(suite, things, rooms, poses, taken).write(tasks);
 }
 
 std::string_view scene_of_class(const BddlProblem& problem) {

@@ -13,6 +13,7 @@
 
 #include "compiler/diag/text.h"
 #include "runtime/compile/files.h"
+#include "runtime/plan/axes.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/roles.h"
@@ -178,6 +179,8 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
       said_by(*report, "odd").find("libero_90 has 1 tasks, the released one 90: another version") !=
       std::string::npos);
   CHECK(said_by(*report, "missing").find("libero_goal: no task") != std::string::npos);
+  CHECK(said_by(*report, "missing").find("probing.probe, which asks all 130 tasks: 1 are there") !=
+        std::string::npos);
   const std::string text = text_of(folder.root / "out/libero_90.probe");
   CAPTURE(text);
   CHECK(text.find("say \"put a cup in the drawer and close it\"") != std::string::npos);
@@ -284,6 +287,27 @@ TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a chec
     CHECK_MESSAGE(built.diagnostics.items().empty(),
                   render_text(built.diagnostics, built.sources).substr(0, 2000));
   }
+  // All of them, asked properly: every diagnostic is mended or allowed.
+  const Compilation asked = compiled(to, "probing.probe");
+  CHECK_MESSAGE(asked.diagnostics.items().empty(),
+                render_text(asked.diagnostics, asked.sources).substr(0, 2000));
+  const auto plan = plan::Plan::from_bytes(asked.plan);
+  REQUIRE(plan.ok());
+  std::map<std::string_view, int> moved;  // by axis
+  for (const plan::TaskRecord& task : plan->tasks()) {
+    if (task.baseline == plan::kNone) continue;
+    const auto names = plan::axis_names(task.axes);
+    // Where the released words say which by a place, the proved phrase is other words as well.
+    if (names.size() > 1) CHECK(plan->text(task.name).find("_where_") != std::string_view::npos);
+    for (const std::string_view name : names) ++moved[name];
+  }
+  for (const char* const axis :
+       {"language.action", "language.paraphrase", "language.appearance", "language.commonsense",
+        "language.spatial", "language.negation", "object.source", "distractors", "layout", "light",
+        "camera", "sensor", "robot", "latency"}) {
+    CHECK_MESSAGE(moved[axis] > 20, axis, " ", moved[axis]);
+  }
+  CHECK(plan->tasks().size() > 3000);
   fs::remove_all(to);
 }
 
