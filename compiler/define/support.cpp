@@ -10,12 +10,14 @@
 #include "compiler/geometry/footprint.h"
 #include "compiler/geometry/part_place.h"
 #include "compiler/geometry/pose.h"
+#include "runtime/plan/regions.h"
 
 namespace probe::sema {
 namespace {
 
 constexpr double kGap = 1e-3;       // m, above what carries it: it comes to rest from there
 constexpr double kRounding = 1e-6;  // m
+constexpr double kUpright = 1e-9;   // of the cosine between an axis and the vertical
 
 Vec3 half_of(const Object& object) {
   return (Vec3(object.box_max.data()) - Vec3(object.box_min.data())) / 2;
@@ -32,6 +34,28 @@ std::array<int, 2> flat_axes(const Mat3& turn, const Vec3& half) {
   }
   const int a = up == 0 ? 1 : 0, b = up == 2 ? 1 : 2;
   return half[a] >= half[b] ? std::array<int, 2>{a, b} : std::array<int, 2>{b, a};
+}
+
+Mat3 matrix_of(const plan::TurnedBox& box) {
+  const auto rows = plan::axes_of(box);
+  Mat3 axes;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      axes(row, column) = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  }
+  return axes;
+}
+
+// How far a box goes straight up from its middle, along the way to the face of axis `up` or to one
+// that is met before.
+double above_middle(const Mat3& turn, const Vec3& half, int up) {
+  if (std::abs(turn(2, up)) > 1 - kUpright) return half[up];
+  double above = half.norm();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double rise = std::abs(turn(2, axis));
+    if (rise > 0) above = std::min(above, half[axis] / rise);
+  }
+  return above;
 }
 
 std::string sides(double a, double b) {
@@ -126,18 +150,20 @@ std::optional<Supports::Area> Supports::in_region(const Task& task, const OfFixt
   const auto joints = joints_of(model_, model_.scenes[task.scene], of.fixture, all);
   const Pose pose = part_pose(fixture, *tree, joints, of.part);
   const Region& region = fixture.regions[*of.region].region;
-  const Vec3 low(region.low.data()), high(region.high.data()), half = (high - low) / 2;
-  const Mat3 turn = pose.rotation.toRotationMatrix();
+  const plan::TurnedBox box = plan::box_of(region.low, region.high, region.turned);
+  const Vec3 half = to_vec(box.half);
+  const Mat3 turn = pose.rotation.toRotationMatrix() * matrix_of(box);
   Area area;
-  area.middle = pose.apply((low + high) / 2);
+  area.middle = pose.apply(to_vec(box.middle));
   const auto axes = flat_axes(turn, half);
   for (std::size_t i = 0; i < 2; ++i) {
     area.along[i] = turn.col(axes[i]);
     area.half[i] = half[axes[i]];
   }
   const int up = 3 - axes[0] - axes[1];
-  area.low = area.middle.z() - half[up];
-  area.high = area.middle.z() + half[up];
+  const double above = above_middle(turn, half, up);
+  area.low = area.middle.z() - above;
+  area.high = area.middle.z() + above;
   area.is_region = true;
   area.boxes = way->at(joints);
   return area;

@@ -123,8 +123,16 @@ class Spots {
  private:
   bool is_on() const { return skill_.place == policy::Skill::Place::kOn; }
 
-  std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& pose, double proud) const {
+  std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& owner, double proud) const {
     std::vector<Wanted> out;
+    const Pose pose = owner * box.turned;
+    // Spots lie in the plane of the two axes that are flattest; z is up where none is more so.
+    const Mat3 axes = pose.rotation.toRotationMatrix();
+    int up = 2;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (std::abs(axes(2, axis)) > std::abs(axes(2, up))) up = axis;
+    }
+    const int first = up == 0 ? 1 : 0, second = up == 2 ? 1 : 2;
     const Vec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (int corner = 0; corner < 8; ++corner) {
@@ -137,9 +145,12 @@ class Spots {
     for (int i = 0; i < kGrid; ++i) {
       for (int j = 0; j < kGrid; ++j) {
         const double u = 0.9 * (2.0 * i / (kGrid - 1) - 1), v = 0.9 * (2.0 * j / (kGrid - 1) - 1);
-        const Vec3 at = pose.apply(middle + Vec3(u * half.x(), v * half.y(), 0));
-        const double off = Vec2(u * half.x(), v * half.y()).norm();
-        const double best = leaves_room_ ? kHalfOut * half.head<2>().minCoeff() : 0;
+        Vec3 aside = Vec3::Zero();
+        aside[first] = u * half[first];
+        aside[second] = v * half[second];
+        const Vec3 at = pose.apply(middle + aside);
+        const double off = aside.norm();
+        const double best = leaves_room_ ? kHalfOut * std::min(half[first], half[second]) : 0;
         out.push_back({{at.x(), at.y(), low}, high + proud, std::abs(off - best)});
       }
     }
@@ -149,7 +160,7 @@ class Spots {
   // The face of its highest solid, with the air above.
   policy::Skill::Box top_of_fixture() const {
     const auto& fixture = view_.fixtures[static_cast<std::size_t>(skill_.to_fixture)];
-    policy::Skill::Box best{Vec3::Zero(), Vec3::Zero()};
+    policy::Skill::Box best{Vec3::Zero(), Vec3::Zero(), {}};
     double highest = -std::numeric_limits<double>::infinity();
     for (const std::vector<Vec3>& part : fixture.parts) {
       Vec3 low = part.front(), high = low;
@@ -160,7 +171,7 @@ class Spots {
       // A rim is no place to stand.
       if (area < 1e-3 || top < highest + 1e-9) continue;
       highest = top;
-      best = {{low.x(), low.y(), high.z() - 0.002}, {high.x(), high.y(), high.z() + 0.005}};
+      best = {{low.x(), low.y(), high.z() - 0.002}, {high.x(), high.y(), high.z() + 0.005}, {}};
     }
     return best;
   }

@@ -29,7 +29,8 @@ Skill::Box top_of(const policy::PrivilegedObject& object) {
   }
   const Vec3 middle = 0.5 * (low + high), half = 0.5 * kInnerBox * (high - low);
   return {{middle.x() - half.x(), middle.y() - half.y(), low.z()},
-          {middle.x() + half.x(), middle.y() + half.y(), high.z() + kOverBox}};
+          {middle.x() + half.x(), middle.y() + half.y(), high.z() + kOverBox},
+          {}};
 }
 
 }  // namespace

@@ -63,12 +63,18 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
 Json regions_of(const plan::Plan& plan, std::uint32_t index) {
   const plan::TaskRecord& task = plan.tasks()[index];
   Json all = Json::array();
-  for (const plan::RegionRecord& region : plan.regions()) {
+  for (std::uint32_t number = 0; number < plan.regions().size(); ++number) {
+    const plan::RegionRecord& region = plan.regions()[number];
     if (!plan::has_region(plan.tables(), task, region)) continue;
     Json low = Json::array(), high = Json::array();
     for (const double x : region.low) low.push_back(x);
     for (const double x : region.high) high.push_back(x);
     all.push_back({{"region", plan.text(region.name)}, {"low_m", low}, {"high_m", high}});
+    // Of a turned one these two are the box around it.
+    if (const auto turned = plan::turned_box(plan.tables(), number))
+      all.back()["turned"] = {{"middle_m", turned->middle},
+                              {"half_m", turned->half},
+                              {"rotation_wxyz", turned->rotation}};
   }
   return all;
 }

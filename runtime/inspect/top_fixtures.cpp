@@ -8,6 +8,7 @@
 
 #include "runtime/inspect/checked_urdf.h"
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/regions.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/scene/link_solids.h"
 
@@ -23,8 +24,12 @@ std::vector<Point> shadow(const scene::Solid& solid) {
   return outline;
 }
 
-scene::Solid box_of(const plan::RegionRecord& region) {
-  return scene::upright_solid(Vec3(region.low.data()), Vec3(region.high.data()));
+scene::Solid solid_of(const plan::TurnedBox& box) {
+  const auto rows = plan::axes_of(box);
+  scene::Solid solid{to_vec(box.middle), {}};
+  for (std::size_t i = 0; i < 3; ++i)
+    solid.axes[i] = box.half[i] * Vec3(rows[0][i], rows[1][i], rows[2][i]);
+  return solid;
 }
 
 double open_end(const plan::FixtureJointRecord& joint) {
@@ -114,7 +119,8 @@ Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
         add_fixture(plan, record, left.first(record.joints.count), asset_root, &frames, view));
     left = left.subspan(record.joints.count);
   }
-  for (const plan::RegionRecord& region : plan.regions()) {
+  for (std::uint32_t number = 0; number < plan.regions().size(); ++number) {
+    const plan::RegionRecord& region = plan.regions()[number];
     Pose frame;
     switch (static_cast<plan::BodyKind>(region.kind)) {
       case plan::BodyKind::kSurface:
@@ -134,8 +140,8 @@ Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
       default:
         continue;
     }
-    view->regions.push_back(
-        {std::string(plan.text(region.name)), shadow(moved(box_of(region), frame))});
+    view->regions.push_back({std::string(plan.text(region.name)),
+                             shadow(moved(solid_of(plan::box_of(plan.tables(), number)), frame))});
   }
   return {};
 }

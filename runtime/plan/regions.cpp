@@ -46,6 +46,22 @@ std::optional<TurnedBox> turned_box(const Tables& tables, std::uint32_t region) 
   return at->box();
 }
 
+TurnedBox box_of(const std::array<double, 3>& low, const std::array<double, 3>& high,
+                 const std::optional<TurnedBox>& turned) {
+  if (turned) return *turned;
+  TurnedBox box;
+  for (std::size_t i = 0; i < 3; ++i) {
+    box.middle[i] = (low[i] + high[i]) / 2;
+    box.half[i] = (high[i] - low[i]) / 2;
+  }
+  return box;
+}
+
+TurnedBox box_of(const Tables& tables, std::uint32_t region) {
+  const RegionRecord& record = tables.regions[region];
+  return box_of(record.low, record.high, turned_box(tables, region));
+}
+
 bool has_region(const Tables& tables, const TaskRecord& task, const RegionRecord& region) {
   return is_of_scene(region) ? region.index == task.scene
                              : owner_of(tables, task, region).has_value();

@@ -17,6 +17,13 @@ std::array<std::array<double, 3>, 3> axes_of(const TurnedBox& box);
 // of the plan: who writes a region and who verifies it ask here.
 void box_around(const TurnedBox& box, std::array<double, 3>& low, std::array<double, 3>& high);
 
+// A region as a box along its own axes, which are those of what it belongs to where it is not
+// turned. `low` and `high` are the box around a turned one: whoever asks where a region is asks
+// here.
+TurnedBox box_of(const std::array<double, 3>& low, const std::array<double, 3>& high,
+                 const std::optional<TurnedBox>& turned);
+TurnedBox box_of(const Tables& tables, std::uint32_t region);
+
 // What a region is along its own axes; nothing where these are those of what it belongs to.
 std::optional<TurnedBox> turned_box(const Tables& tables, std::uint32_t region);
 

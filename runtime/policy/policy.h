@@ -99,6 +99,7 @@ struct Skill {
   int to_object = -1, to_fixture = -1;  // both none: the surface
   struct Box {
     Vec3 low, high;  // in the frame of what it is put to; of the surface in the world's
+    Pose turned;     // the box's own frame in that one
   };
   std::optional<Box> region;
   bool shares = false;  // `region` is the expert's: beside others on or in `to_object`

@@ -91,7 +91,10 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
           origin.z() = scene.surface_z;
         if (region.kind == static_cast<std::uint32_t>(plan::BodyKind::kFixture))
           origin = vec(scene.fixture_position);
-        skill.region = policy::Skill::Box{vec(region.low) + origin, vec(region.high) + origin};
+        skill.region = policy::Skill::Box{vec(region.low) + origin, vec(region.high) + origin, {}};
+        if (const auto box = plan::turned_box(plan.tables(), record.region))
+          skill.region = policy::Skill::Box{
+              -vec(box->half), vec(box->half), {vec(box->middle) + origin, to_quat(box->rotation)}};
         if (const auto owner = plan::owner_of(plan.tables(), task, region))
           to = seen_of(*owner, bodies);
       }

@@ -323,9 +323,7 @@ class Deriver {
     if (place.region != plan::kNone) {
       const plan::RegionRecord& region = plan_.regions()[place.region];
       below = *owner_of(region);
-      for (int i = 0; i < 3; ++i)
-        at[i] = 0.5 * (region.low[static_cast<std::size_t>(i)] +
-                       region.high[static_cast<std::size_t>(i)]);
+      at = to_vec(plan::box_of(plan_.tables(), place.region).middle);
       at += world->sample.bodies[below].origin;
     } else {
       const Vec3& half_below = world->starts[below].half;

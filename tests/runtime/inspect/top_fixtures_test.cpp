@@ -2,10 +2,18 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/inspect/svg.h"
+#include "runtime/inspect/task_json.h"
 #include "tests/plan/other_link.h"
 
 using namespace probe;
@@ -64,6 +72,46 @@ TEST_CASE("parts are seen where their joints begin and where they end, regions w
   CHECK(shut.regions[0].name == "cabinet.inside_top");
   CHECK(high_y(shut.regions[0].outline) == doctest::Approx(0.40));
   CHECK(high_y(ajar.regions[0].outline) == doctest::Approx(0.35));
+}
+
+TEST_CASE("a turned region is drawn and told as it lies, not as the box around it") {
+  const std::string text = R"(
+use "suite/intact.probe"
+scene slotted like table {
+  region slot of surface box (-3cm, -9cm, 0cm) .. (3cm, 9cm, 8cm) at (-10cm, 10cm, 0cm) yaw 45deg
+}
+task turned like carrot_on_plate { scene slotted }
+suite all { tasks { turned }; seeds 0 }
+)";
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("probe_turned_" + std::to_string(getpid()) + ".probe");
+  std::ofstream(file) << text;
+  const std::vector<std::string> files = {file.string()};
+  auto built = build(
+      files,
+      {.asset_root = kRoot + "/assets", .suite = "", .library_folders = {kRoot + "/dsl", kRoot}});
+  std::filesystem::remove(file);
+  REQUIRE(built.ok());
+  REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
+  const auto plan = plan::Plan::from_bytes(std::move(built->plan));
+  REQUIRE(plan.ok());
+  const std::uint32_t task = plan->find_task("turned").value();
+  const auto view = top_view(*plan, task, kRoot + "/assets");
+  REQUIRE(view.ok());
+  REQUIRE(view->regions.size() == 1);
+  REQUIRE(view->regions[0].outline.size() >= 4);
+  for (const Point& corner : view->regions[0].outline)
+    CHECK(std::hypot(corner.x + 0.10, corner.y - 0.10) == doctest::Approx(std::hypot(0.03, 0.09)));
+
+  const Json regions = describe(*plan, task)["regions"];
+  REQUIRE(regions.size() == 1);
+  const Json& turned = regions[0]["turned"];
+  CHECK(turned["half_m"] == Json::array({0.03, 0.09, 0.04}));
+  CHECK(turned["middle_m"][1].get<double>() == doctest::Approx(0.1));
+  CHECK(turned["rotation_wxyz"][0].get<double>() ==
+        doctest::Approx(std::cos(std::numbers::pi / 8)));
+  // Beside it the box around it, as ever.
+  CHECK(regions[0]["high_m"][1].get<double>() == doctest::Approx(0.1 + 0.12 * std::sqrt(0.5)));
 }
 
 TEST_CASE("the picture names parts and regions and says which way is left") {

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
@@ -164,6 +165,36 @@ suite all { tasks { never }; seeds 0 }
   const auto derived = vm::derive_solution(plan, plan.find_task("never").value());
   REQUIRE_MESSAGE(derived.ok(), (derived.ok() ? "" : to_text(derived.failure())));
   CHECK(derived->empty());
+}
+
+TEST_CASE("a turned region is put into where it is, not in the larger box around it") {
+  const plan::Plan plan = kitchen_of(R"(
+scene slotted like wide {
+  region slot of surface box (-4cm, -9cm, 0cm) .. (4cm, 9cm, 8cm) at (0cm, 10cm, 0cm) yaw 45deg
+}
+metrics stowed { success = at end within(position(source), surface.slot) }
+task straight like kept { scene slotted; metrics stowed; say "put {the source} there"; solution { put source in surface.slot } }
+suite all { tasks { straight }; seeds 0 }
+)");
+  const std::uint32_t task = plan.find_task("straight").value();
+  const std::uint32_t tasks[] = {task};
+  const auto assets = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+  REQUIRE(assets.ok());
+  const auto bodies = task_bodies(plan, plan.tasks()[task], **assets);
+  REQUIRE(bodies.ok());
+  const auto skills = solution_of(plan, plan::skills_of(plan.tables(), task), *bodies);
+  REQUIRE(skills.size() == 1);
+  REQUIRE(skills[0].region.has_value());
+  const policy::Skill::Box& box = *skills[0].region;
+  CHECK((box.low - Vec3(-0.04, -0.09, -0.04)).norm() < 1e-12);
+  CHECK((box.high - Vec3(0.04, 0.09, 0.04)).norm() < 1e-12);
+  CHECK((box.turned.position - Vec3(0, 0.1, 0.94)).norm() < 1e-12);
+  const double turned = box.turned.rotation.angularDistance(Quat::Identity());
+  CHECK(turned == doctest::Approx(std::numbers::pi / 4));
+  const auto derived = vm::derive_solution(plan, task);
+  REQUIRE(derived.ok());
+  REQUIRE(derived->size() == 1);
+  CHECK(plan::skill_text(plan.tables(), derived->front()) == "put carrot in surface.slot");
 }
 
 TEST_CASE("the expert opens a drawer, puts the carrot in and closes it") {
