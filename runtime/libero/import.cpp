@@ -122,6 +122,8 @@ class LiberoImport {
                      options_.from};
     }
     for (const std::string& odd : odd_) say("odd", odd);
+    for (const std::string& broken : broken_) say("broken", broken);
+    report_.broken = broken_.size();
     if (poses_.empty()) {
       say("odd",
           "where fixtures stand is in no stored start: here in the middle of their regions, which "
@@ -254,13 +256,53 @@ class LiberoImport {
     });
   }
 
+  // Why a task's things cannot be called as it calls them: an import has one text of things.
+  std::optional<std::string> clash_of(const TaskSource& task,
+                                      const std::set<std::string>& categories) const {
+    static constexpr std::string_view kTaken[] = {"source",        "target",      "helper",
+                                                  "helper_target", "distractors", "surface"};
+    for (const BddlThing& object : task.problem.objects) {
+      const std::string name = "`" + object.name + "`";
+      if (categories.contains(object.name)) return name + " is the name of a category, too";
+      if (std::ranges::find(kTaken, object.name) != std::end(kTaken))
+        return name + " is a word of the language";
+      const auto known = instances_.find(object.name);
+      if (known != instances_.end() && known->second != object.category) {
+        return name + " is of category " + object.category + " here and of " + known->second +
+               " in an earlier task";
+      }
+    }
+    return std::nullopt;
+  }
+
+  void leave_out_clashes() {
+    std::set<std::string> categories;
+    for (const auto& [suite, tasks] : tasks_) {
+      for (const TaskSource& task : tasks) {
+        for (const auto* things : {&task.problem.objects, &task.problem.fixtures}) {
+          for (const BddlThing& thing : *things) categories.insert(thing.category);
+        }
+      }
+    }
+    for (auto& [suite, tasks] : tasks_) {
+      std::erase_if(tasks, [&, of = suite](const TaskSource& task) {
+        const auto clash = clash_of(task, categories);
+        if (clash) leave_out(*of, task.stem, *clash);
+        if (clash) return true;
+        for (const BddlThing& object : task.problem.objects)
+          instances_[object.name] = object.category;
+        return false;
+      });
+    }
+  }
+
   Status convert_things() {
+    leave_out_clashes();
     std::map<std::string, bool> wanted;  // category -> whether it stands
     for (const auto& [suite, tasks] : tasks_) {
       for (const TaskSource& task : tasks) {
         for (const BddlThing& object : task.problem.objects) {
           wanted.emplace(object.category, false);
-          instances_[object.name] = object.category;
         }
         for (const BddlThing& fixture : task.problem.fixtures) {
           if (!is_workspace(task.problem, fixture)) wanted[fixture.category] = true;
@@ -448,7 +490,11 @@ class LiberoImport {
       const bool is_here = !said.primary.is_none() &&
                            checked.sources.file(said.primary.file).name().ends_with("/" + path);
       const auto task = is_here ? task_around(checked.sources, said.primary) : std::nullopt;
-      if (said.severity == Severity::kError || code.slug.empty() || !task) {
+      if (said.severity == Severity::kError) {
+        broken_.insert(fmt::format("{}: {}: {}", task.value_or(path), code.text, said.message));
+        continue;
+      }
+      if (code.slug.empty() || !task) {
         odd_.insert(fmt::format("{}: {}: {}", path, code.text, said.message));
         continue;
       }
@@ -601,7 +647,7 @@ class LiberoImport {
   std::set<std::string> taken_;  // names of fixtures and scenes
   std::vector<std::string> written_;
   std::vector<AskedTask> asked_;
-  std::set<std::string> odd_;
+  std::set<std::string> odd_, broken_;
 };
 
 }  // namespace

@@ -19,19 +19,21 @@ struct ImportOptions {
 };
 
 struct ImportLine {
-  std::string word;  // "suite", "object", "fixture", "odd", "missing"
+  std::string word;  // "suite", "object", "fixture", "room", "odd", "missing", "broken"
   std::string text;
 };
 
 struct ImportReport {
   std::vector<ImportLine> lines;
   std::size_t tasks = 0, starts = 0, files = 0;
+  std::size_t broken = 0;  // things for which a text that was written does not check
   std::uint64_t bytes = 0;
 };
 
 // OUT appears whole or not at all. A task whose problem, starts or models cannot be read is a line
-// and left out; nothing is filled in. Fails (kUsage, kIo) where no such folder is, where no task
-// can be read, and where `to` is there already.
+// and left out; nothing is filled in. So is one whose things are called as another task calls
+// others, or by a word that means something else in a text. Fails (kUsage, kIo) where no such
+// folder is, where no task can be read, and where `to` is there already.
 Result<ImportReport> import_libero(const ImportOptions& options);
 
 }  // namespace probe::libero

@@ -81,8 +81,11 @@ Result<StartStates> read_states(const std::string& path, const BddlProblem& prob
   }
   for (std::size_t i = 0; i < rows.count; ++i) {
     const std::span<const double> row(rows.values.data() + i * rows.width, rows.width);
-    if (!std::ranges::all_of(row, [](double value) { return std::isfinite(value); }))
-      return wrong(fmt::format("start {} has a number that is not finite", i));
+    // Metres and radians: nothing of a room is farther.
+    constexpr double kFarthest = 1000;
+    if (!std::ranges::all_of(row, [](double value) { return std::abs(value) <= kFarthest; }))
+      return wrong(
+          fmt::format("start {} has a number that is not finite, or beyond {}", i, kFarthest));
     StartState start;
     start.time = row[0];
     auto at = row.begin() + 1;

@@ -16,6 +16,11 @@ int import_libero(libero::ImportOptions& options) {
   for (const libero::ImportLine& line : imported->lines) put("{:<8} {}\n", line.word, line.text);
   say("{}: {} tasks, {} starts; {} files, {:.1f} MB\n", options.to, imported->tasks,
       imported->starts, imported->files, static_cast<double>(imported->bytes) / 1e6);
+  if (imported->broken > 0) {
+    say("vlaprobe: {}: the lines above that begin with `broken` are errors of the texts\n",
+        options.to);
+    return kOutside;
+  }
   say("next: vlaprobe check {}/libero_goal.probe --assets {}\n", options.to, options.to);
   return kFine;
 }
