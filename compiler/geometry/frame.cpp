@@ -12,7 +12,8 @@ Frame frame_of(const Model& model, const Scene& scene, const Camera& camera) {
   frame.ahead = base.rotation * Vec3::UnitX();
   frame.left = base.rotation * Vec3::UnitY();
   // What is left in one start need not be so in the next: programs have one camera for all.
-  if (camera.jitters()) return frame;
+  frame.jitters = camera.jitters();
+  if (frame.jitters) return frame;
   const auto pose = camera_pose(model, scene, camera);
   if (!pose) return frame;
   Sight sight;

@@ -20,6 +20,7 @@ struct Sight {
 
 struct Frame {
   std::optional<Sight> sight;  // nothing when the camera moves, jitters or looks away from the area
+  bool jitters = false;        // the camera: why there is no sight
   Vec3 base = Vec3::Zero();    // of the robot, m
   Vec3 ahead = Vec3::Zero(), left = Vec3::Zero();  // of the robot as its base stands, units
 };

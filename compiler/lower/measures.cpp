@@ -114,9 +114,15 @@ std::uint16_t Lowering::point(const Value& value) {
 }
 
 Value Lowering::in_view(const ExprNode& node, const Value& of, bool is_across) {
-  if (!frame_.sight)
-    return fail(node.span, "`" + std::string(sema::info(node.measure).name) +
-                               "` needs a first camera that stands still and sees the area");
+  if (!frame_.sight) {
+    const std::string measure = "`" + std::string(sema::info(node.measure).name) + "`";
+    return fail(node.span,
+                frame_.jitters
+                    ? measure +
+                          " needs a first camera that stands in one place; this one has "
+                          "`jitter` and stands elsewhere in each start"
+                    : measure + " needs a first camera that stands still and sees the area");
+  }
   const sema::Sight& sight = *frame_.sight;
   if (!is_across) {
     // One order of instructions, whatever order a C++ compiler gives to arguments.

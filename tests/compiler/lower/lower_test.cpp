@@ -284,6 +284,10 @@ TEST_CASE("what has no place in the picture and what is no vector is said at its
   CHECK(said("view_x(source) > 1cm", "camera on_wrist",
              "camera on_wrist like eye { mount arm.wrist at (0cm, 0cm, 1m) look (1, 0, -1) }") ==
         "error[P0601]: `view_x` needs a first camera that stands still and sees the area");
+  CHECK(
+      said("view_x(source) > 1cm", "camera shaken", "camera shaken like eye { jitter 3cm 5deg }") ==
+      "error[P0601]: `view_x` needs a first camera that stands in one place; this one has "
+      "`jitter` and stands elsewhere in each start");
   CHECK(said("distance(source, (x(target), 0cm, 0cm)) < 1cm") ==
         "error[P0601]: the numbers of a vector are constants, this is measured");
   CHECK(said("distance(source, (1cm, 0, 0cm)) < 1cm") ==
