@@ -564,7 +564,7 @@ class LiberoImport {
   }
 
   Status write_things() {
-    std::string text = std::string text =
+    std::string text =
         "# The benchmark's things: how they look, weigh and feel is in their files, what their "
         "names "
         "prove is said with them; more facts and phrases are yours to say.\n"
