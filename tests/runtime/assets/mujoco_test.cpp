@@ -356,9 +356,9 @@ TEST_CASE(
   MujocoOptions options;
   options.kind = MujocoKind::kBackdrop;
   options.file = folder.write("room.xml", kRoom);
-  options.changes = {{"table", Vec3(1, 0, 0.875), {}, {}},
-                     {"table_felt", {}, Vec3(0.5, 0.6, 0.025), 0.7},
-                     {"table_seen", {}, Vec3(0.5, 0.6, 0.025), {}}};
+  options.changes = {{"table", Vec3(1, 0, 0.875), {}, {}, {}},
+                     {"table_felt", {}, Vec3(0.5, 0.6, 0.025), 0.7, {}},
+                     {"table_seen", {}, Vec3(0.5, 0.6, 0.025), {}, {}}};
   const MujocoAsset room = converted(options);
   REQUIRE(room.surfaces.size() == 2);
   CHECK(room.surfaces[0].name == "floor");
