@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -77,6 +79,20 @@ inline std::string names_text(const Analysis& a, const std::vector<sema::TaskId>
   std::string text;
   for (const sema::TaskId id : tasks) text += (text.empty() ? "" : " ") + a.model.tasks[id].name;
   return text;
+}
+
+// A text of ours without what it uses, for what has no folder to use texts from.
+inline std::string page_of(const std::string& path) {
+  std::ifstream file(std::string(VLAPROBE_SOURCE_DIR) + "/" + path);
+  REQUIRE_MESSAGE(file.good(), path);
+  std::string page;
+  for (std::string line; std::getline(file, line);)
+    page += (line.starts_with("use ") ? "" : line) + "\n";
+  return page;
+}
+// The library's pages of contacts and places.
+inline std::string places() {
+  return page_of("dsl/std/contact.probe") + page_of("dsl/std/place.probe");
 }
 
 // What is said when the text behind the small suite is built; "" for a plan.

@@ -2,7 +2,6 @@
 // holds.
 #include <doctest/doctest.h>
 
-#include <fstream>
 #include <numbers>
 
 #include "runtime/base/upright.h"
@@ -298,17 +297,6 @@ TEST_CASE("e_un: every measure") {
                 {"times height(source) > 1cm", 1},
                 {"times height(source) < 1cm", 0}},
                world);
-}
-
-// The library's pages of contacts and places.
-std::string places() {
-  std::string library;
-  for (const char* page : {"contact.probe", "place.probe"}) {
-    std::ifstream file(std::string(VLAPROBE_SOURCE_DIR) + "/dsl/std/" + page);
-    for (std::string line; std::getline(file, line);)
-      library += (line.starts_with("use ") ? "" : line) + "\n";
-  }
-  return library;
 }
 
 TEST_CASE("the library's inside has its middle between the walls, below the rim, off the ground") {

@@ -31,11 +31,12 @@ TEST_CASE("template: the frame is the verb; other words in one frame are a parap
             ->codes() == "P0702");
 }
 
-TEST_CASE("frame untold: a control is held to nothing, may be no words, and is never the task's own") {
+TEST_CASE(
+    "words of the frame untold are held to nothing, may be none, and are never the task's own") {
   const auto a = clean(
       "template silence frame untold \"\"\n"
       "template other   frame untold \"open the drawer, then put the blue block in it\"\n"
-      "template own     frame untold \"put the red block on the tray\"\n"
+      "template own     frame untold \"put {source} on {the target}\"\n"
       "derive \"{t}_{w}\" for t in { red_on_tray }, w in templates of untold { say w }\n");
   CHECK(a->task("red_on_tray_silence").prompt.empty());
   CHECK(axes_text(*a, "red_on_tray_silence") == "language.action");

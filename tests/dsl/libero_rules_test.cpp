@@ -2,8 +2,6 @@
 // made at random: regions turned and not, on parts that are turned, too.
 #include <doctest/doctest.h>
 
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include "runtime/vm/judge.h"
@@ -14,10 +12,7 @@ using namespace probe::test;
 
 namespace {
 
-std::string rules() {
-  std::ifstream file(VLAPROBE_SOURCE_DIR "/suite/libero/predicates.probe");
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+std::string rules() { return places() + page_of("suite/libero/predicates.probe"); }
 
 const char* const kScene = R"(
 fixture box {

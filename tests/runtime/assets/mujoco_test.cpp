@@ -383,7 +383,7 @@ TEST_CASE(
   }
   CHECK(left == -3.0f);
   CHECK(high == doctest::Approx(0.9f));
-  options.changes = {{"chair", Vec3(0, 0, 0), {}, {}}};
+  options.changes = {{"chair", Vec3(0, 0, 0), {}, {}, {}}};
   CHECK(failure_of(folder, options) ==
         "room.xml: 0 bodies and geoms are called `chair`, which is to be changed");
 }
