@@ -143,12 +143,7 @@ Status check_model_name(const std::string& name, const std::string& model) {
   const bool is_taken = std::ranges::any_of(
       kOwnModels, [&](const OwnEntry& entry) { return reads_alike(entry.name, name); });
   if (!is_taken) return {};
-  const std::string asked = model.empty() ? "the caller's model" : "`" + model + "`";
-  return Failure{Fault::kUsage,
-                 "`" + name +
-                     "` reads as a model of the program's own, whose rows could not be told " +
-                     "from those of " + asked + ": give it another name",
-                 "--name"};
+  return name_taken(name, "model", model);
 }
 
 std::unique_ptr<Model> make_own_model(std::string_view text) {

@@ -24,6 +24,15 @@ Status check_row_name(const std::string& name) {
                  "--name"};
 }
 
+Failure name_taken(const std::string& name, const std::string& kind, const std::string& asked) {
+  const std::string of = asked.empty() ? "the caller's " + kind : "`" + asked + "`";
+  return {Fault::kUsage,
+          "`" + name + "` reads as a " + kind +
+              " of the program's own, whose rows could not be told from those of " + of +
+              ": give it another name",
+          "--name"};
+}
+
 bool reads_alike(std::string_view a, std::string_view b) {
   return fold_case(compatible_form(a)) == fold_case(compatible_form(b));
 }

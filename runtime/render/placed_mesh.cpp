@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/render/clones.h"
+#include "runtime/render/placing_check.h"
 
 namespace probe::render {
 namespace {
@@ -58,11 +59,7 @@ Status PlacedMeshes::add(const std::vector<Visual>& visuals,
                          std::span<const std::shared_ptr<const VertexMesh>> meshes) {
   for (std::size_t i = 0; i < visuals.size(); ++i) {
     const Visual& visual = visuals[i];
-    if (!is_finite(visual.origin) || std::abs(visual.origin.rotation.norm() - 1) > 1e-6) {
-      return Failure{.code = Fault::kRender,
-                     .message = "the visual's origin is not finite or not a rotation",
-                     .where = visual.name};
-    }
+    PROBE_TRY(check_origin(visual));
     Instance instance;
     instance.mesh = meshes[i];
     instance.origin = visual.origin;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "runtime/render/placing_check.h"
+
 namespace probe::render {
 
 Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
@@ -19,11 +21,7 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
                           dynamic ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_HIGH);
   for (std::size_t i = 0; i < visuals.size(); ++i) {
     const Visual& visual = visuals[i];
-    if (!is_finite(visual.origin) || std::abs(visual.origin.rotation.norm() - 1) > 1e-6) {
-      return Failure{.code = Fault::kRender,
-                     .message = "the visual's origin is not finite or not a rotation",
-                     .where = visual.name};
-    }
+    PROBE_TRY(check_origin(visual));
     Instance instance;
     instance.geometry = std::move(meshes[i]);
     instance.origin = visual.origin;
@@ -43,21 +41,8 @@ Result<TopScene> TopScene::create(const std::vector<Visual>& visuals,
 }
 
 Status TopScene::place(std::span<const Pose> poses) {
-  if (poses.size() != instances_.size()) {
-    return Failure{.code = Fault::kRender,
-                   .message = std::to_string(poses.size()) + " poses for " +
-                              std::to_string(instances_.size()) + " visuals",
-                   .where = ""};
-  }
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (is_finite(poses[i]) && std::abs(poses[i].rotation.squaredNorm() - 1) < 1e-3 &&
-        poses[i].position.norm() < 1e6) {
-      continue;
-    }
-    return Failure{.code = Fault::kRender,
-                   .message = "the pose is not finite, not rigid or farther than 1000 km",
-                   .where = instances_[i].name};
-  }
+  PROBE_TRY(check_poses(poses, instances_.size(),
+                        [this](std::size_t i) { return std::string(instances_[i].name); }));
   const bool is_first = !placed_;
   moved_ = is_first ? kAllInstances : 0;
   placed_ = true;

@@ -10,6 +10,7 @@
 #include "runtime/render/camera_rays.h"
 #include "runtime/render/picture.h"
 #include "runtime/render/placed_mesh.h"
+#include "runtime/render/placing_check.h"
 #include "runtime/render/scene_store.h"
 
 namespace probe::render {
@@ -141,7 +142,7 @@ class VertexRenderer final : public Renderer {
   }
 
   Result<FrameView> render(std::span<const Pose> poses) override {
-    PROBE_TRY(check_poses(poses));
+    PROBE_TRY(check(poses));
     const FlushDenormals guard;
     if (!is_still_) {
       begin(spec_.camera);
@@ -183,7 +184,7 @@ class VertexRenderer final : public Renderer {
 
  private:
   Result<FrameView> draw_all(const Camera& camera, std::span<const Pose> poses) {
-    PROBE_TRY(check_poses(poses));
+    PROBE_TRY(check(poses));
     const FlushDenormals guard;
     is_still_ = false;
     begin(camera);
@@ -197,24 +198,10 @@ class VertexRenderer final : public Renderer {
     return {frame_.width, frame_.height, frame_.rgb, frame_.depth, frame_.segmentation};
   }
 
-  Status check_poses(std::span<const Pose> poses) const {
-    const std::size_t statics = spec_.statics.size();
-    if (poses.size() != spec_.dynamics.size()) {
-      return Failure{.code = Fault::kRender,
-                     .message = std::to_string(poses.size()) + " poses for " +
-                                std::to_string(spec_.dynamics.size()) + " visuals",
-                     .where = ""};
-    }
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      if (is_finite(poses[i]) && std::abs(poses[i].rotation.squaredNorm() - 1) < 1e-3 &&
-          poses[i].position.norm() < 1e6) {
-        continue;
-      }
-      return Failure{.code = Fault::kRender,
-                     .message = "the pose is not finite, not rigid or farther than 1000 km",
-                     .where = seen_.meshes().name(statics + i)};
-    }
-    return {};
+  Status check(std::span<const Pose> poses) const {
+    return check_poses(poses, spec_.dynamics.size(), [this](std::size_t i) {
+      return std::string(seen_.meshes().name(spec_.statics.size() + i));
+    });
   }
 
   // Everything of it is what stands still.

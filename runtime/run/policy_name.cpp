@@ -12,12 +12,7 @@ Status check_policy_name(const std::string& name, const std::string& policy) {
   const auto choice = choose_policy(fold_case(compatible_form(name)));
   // A server may be called by an address: one that has moved keeps the rows' name.
   if (!choice || choice->server) return {};
-  const std::string asked = policy.empty() ? "the caller's policy" : "`" + policy + "`";
-  return Failure{Fault::kUsage,
-                 "`" + name +
-                     "` reads as a policy of the program's own, whose rows could not be told " +
-                     "from those of " + asked + ": give it another name",
-                 "--name"};
+  return name_taken(name, "policy", policy);
 }
 
 }  // namespace probe::run

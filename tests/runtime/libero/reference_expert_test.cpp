@@ -1,7 +1,6 @@
 // The expert in the benchmark's own starts, a start or two of tasks that ask for different holds
 // and places: what solves them all is measured with `run --policy expert`.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <map>
@@ -9,9 +8,8 @@
 #include <vector>
 
 #include "runtime/compile/files.h"
-#include "runtime/libero/import.h"
 #include "runtime/stage/stage.h"
-#include "tests/runtime/libero/reference.h"
+#include "tests/runtime/libero/imported.h"
 #include "tests/runtime/stage/solves.h"
 
 namespace probe::libero {
@@ -53,14 +51,7 @@ TEST_CASE("the expert solves starts of the benchmark by the solutions that the i
     MESSAGE("skipped: no ../shared/reference/libero");
     return;
   }
-  const fs::path to =
-      fs::temp_directory_path() / ("vlaprobe_libero_solved_" + std::to_string(getpid()));
-  fs::remove_all(to);
-  ImportOptions options;
-  options.from = test::reference();
-  options.to = to.string();
-  options.own = VLAPROBE_SOURCE_DIR "/assets";
-  REQUIRE(import_libero(options).ok());
+  const fs::path to = test::imported_reference("solved");
   std::map<std::string, plan::Plan> plans;
   for (const Asked& asked : kAsked) {
     CAPTURE(asked.task);

@@ -1,7 +1,6 @@
 // The imported rules of success on the benchmark's own states: where its own program saw none, none
 // is seen, and every verdict is that of a plain rewrite of its code.
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -14,7 +13,6 @@
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/compile/files.h"
-#include "runtime/libero/import.h"
 #include "runtime/libero/zip.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
@@ -22,7 +20,7 @@
 #include "runtime/robot/urdf.h"
 #include "runtime/vm/judge.h"
 #include "runtime/wire/npy.h"
-#include "tests/runtime/libero/reference.h"
+#include "tests/runtime/libero/imported.h"
 
 namespace probe::libero {
 namespace {
@@ -210,14 +208,7 @@ TEST_CASE("the judge on stored and settled states of the benchmark, against a pl
     MESSAGE("skipped: no ../shared/reference/libero");
     return;
   }
-  const fs::path to =
-      fs::temp_directory_path() / ("vlaprobe_libero_judged_" + std::to_string(getpid()));
-  fs::remove_all(to);
-  ImportOptions options;
-  options.from = test::reference();
-  options.to = to.string();
-  options.own = VLAPROBE_SOURCE_DIR "/assets";
-  REQUIRE(import_libero(options).ok());
+  const fs::path to = test::imported_reference("judged");
   const auto json = [](const std::string& name) {
     const auto text = read_file(test::reference() + name);
     REQUIRE(text.ok());
