@@ -19,7 +19,7 @@ struct ImportOptions {
 };
 
 struct ImportLine {
-  std::string word;  // "suite", "object", "fixture", "room", "odd", "missing", "broken"
+  std::string word;  // "suite", "object", "fixture", "room", "robot", "odd", "missing", "broken"
   std::string text;
 };
 

@@ -1,5 +1,5 @@
-// The derived file of an import: its tasks sorted by what is to be done and where, each with the
-// variants that need starts of their own. What is asked of them stands in suite/libero/asked.probe.
+// The derived files of an import: its tasks sorted by what is to be done and where, with the
+// variants that need starts of their own or the words inside their files; and its tasks repaired. What is asked of them stands in suite/libero/asked.probe.
 // Reads no file.
 #pragma once
 
@@ -25,7 +25,7 @@ SuiteText write_probing(const std::vector<std::string>& suites, const std::vecto
                         const Things& things);
 
 // The same tasks judged by the rules of suite/libero/clean.probe, each compared with the
-// benchmark's.
+// benchmark's where a rule changes.
 std::string write_clean(const std::vector<std::string>& suites,
                         const std::vector<AskedTask>& tasks);
 

@@ -106,7 +106,7 @@ std::optional<PlacedMeshes::Mirror> PlacedMeshes::mirror() const {
     const Vec3 normal(part.normals[0], part.normals[1], part.normals[2]);
     mirror.normal = instance.place.rotation * normal;
     mirror.height = mirror.normal.dot(instance.place.apply(Vec3(part.x[0], part.y[0], part.z[0])));
-    if (mirror.normal.dot(eye_) <= mirror.height || is_outside(instance, part)) return std::nullopt;
+    if (mirror.normal.dot(eye_) <= mirror.height || is_outside(instance, part)) continue;
     mirror.left = width_;
     mirror.top = height_;
     for (std::size_t i = 0; i < part.x.size(); ++i) {

@@ -56,7 +56,6 @@ class PlacedMeshes {
 
   Status add(const std::vector<Visual>& visuals,
              std::span<const std::shared_ptr<const VertexMesh>> meshes);
-  std::size_t count() const { return instances_.size(); }
   const std::string& name(std::size_t instance) const { return instances_[instance].name; }
   void look_from(const Camera& camera);
   // A flat metal that moves with a visual: its plane in world, and the pixels it may be seen in.

@@ -31,8 +31,6 @@ class SampleBuffer {
   // What another buffer of the same size has in columns [left, right) of a row.
   void restore(const SampleBuffer& from, int row, int left, int right);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
   const std::uint32_t* ids(int x, int y) const { return &id_[4 * at(x, y)]; }
   const float* nearness(int x, int y) const { return &nearness_[4 * at(x, y)]; }
 

@@ -99,7 +99,7 @@ TEST_CASE("numbers and lists that are none are told") {
   CHECK(mistakes_in(changed("(-0.1 0 -0.05 0.05)", "(-0.1 zero -0.05 0.05)")) ==
         "t.bddl:7:23: expected a number, found `zero`\n");
   CHECK(mistakes_in(changed("(-0.1 0 -0.05 0.05)", "(-0.1 nan -0.05 0.05)")) ==
-        "t.bddl:7:23: expected a number, found `nan`\n");
+        "t.bddl:7:23: expected a number from -1000 to 1000, found `nan`\n");
   CHECK(mistakes_in(changed("(-0.1 0 -0.05 0.05)", "(-0.1 0 -0.05)")) ==
         "t.bddl:7:17: expected 4 numbers in brackets\n");
   CHECK(mistakes_in(changed("(-0.1 0 -0.05 0.05)", "(0.1 0 -0.05 0.05)")) ==
