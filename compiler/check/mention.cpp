@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "compiler/check/check.h"
+#include "compiler/check/said.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
@@ -14,51 +15,27 @@
 namespace probe::sema {
 namespace {
 
-// What stands before a noun that is meant...
+// What stands before a noun that is meant; what may follow it: may_follow_noun().
 constexpr auto kBefore = std::to_array<std::string_view>(
     {"a",     "an",      "the",  "this",   "that",    "each",  "every",   "both",    "any",
      "no",    "in",      "into", "inside", "on",      "onto",  "to",      "towards", "from",
      "of",    "off",     "over", "under",  "above",   "below", "behind",  "beside",  "near",
      "with",  "without", "by",   "at",     "between", "and",   "or",      "not",     "than",
      "avoid", "up",      "down", "around", "against", "until", "another", "other"});
-// ... and what may follow it, beside a sign and the end.
-constexpr auto kAfter = std::to_array<std::string_view>(
-    {"in",      "into",  "inside", "on",      "onto",  "to",     "towards", "from",   "of",
-     "off",     "over",  "under",  "above",   "below", "behind", "beside",  "near",   "with",
-     "without", "by",    "at",     "between", "and",   "or",     "not",     "than",   "up",
-     "down",    "then",  "first",  "before",  "after", "while",  "until",   "around", "against",
-     "is",      "as",    "so",     "that",    "where", "when",   "instead", "please", "alone",
-     "away",    "there", "but",    "should"});
 
 bool has(const auto& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-struct Word {
-  std::string text;   // folded, without signs
-  bool ends = false;  // a sign or the end of the literal words follows
-};
-
 // The words of a template; a slot is one empty word.
-std::vector<Word> words_of(const Template& say) {
-  constexpr std::string_view kSigns = ".,;:!?()\"";
-  std::vector<Word> words;
+std::vector<Said::Word> words_of(const Template& say) {
+  std::vector<Said::Word> words;
   for (const Template::Part& part : say.parts) {
     if (part.slot) {
-      words.push_back({{}, true});
+      words.push_back({.text = {}, .of = {}, .ends = true});
       continue;
     }
-    const std::string text = fold_case(part.literal);
-    for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
-      const std::size_t end = std::min(text.find(' ', at), text.size());
-      Word word{text.substr(at, end - at)};
-      while (!word.text.empty() && kSigns.find(word.text.back()) != kSigns.npos) {
-        word.text.pop_back();
-        word.ends = true;
-      }
-      if (!word.text.empty()) words.push_back(std::move(word));
-      at = end;
-    }
+    for (Said::Word& word : words_in(part.literal)) words.push_back(std::move(word));
   }
   if (!words.empty()) words.back().ends = true;
   return words;
@@ -76,7 +53,7 @@ std::vector<std::string> split(const std::string& text) {
 
 using Names = std::map<std::vector<std::string>, std::vector<ObjectId>>;
 
-const std::vector<std::string>* longest(const Names& called, const std::vector<Word>& words,
+const std::vector<std::string>* longest(const Names& called, const std::vector<Said::Word>& words,
                                         std::size_t from) {
   const std::vector<std::string>* found = nullptr;
   for (const auto& [name, objects] : called) {
@@ -127,14 +104,14 @@ Mentions::Mentions(const Model& model) : model_(model) {
 
 std::vector<ObjectId> Mentions::in(const Template& say) const {
   std::vector<ObjectId> found;
-  const std::vector<Word> words = words_of(say);
+  const std::vector<Said::Word> words = words_of(say);
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool is_object_of_verb = i == 1;
     if (i == 0 || !(is_object_of_verb || has(kBefore, words[i - 1].text))) continue;
     const auto* name = longest(called_, words, i);
     if (name == nullptr) continue;
     const std::size_t last = i + name->size() - 1;
-    const bool is_noun = words[last].ends || has(kAfter, words[last + 1].text);
+    const bool is_noun = words[last].ends || may_follow_noun(words[last + 1].text);
     const ObjectId first = called_.at(*name).front();
     if (is_noun && std::find(found.begin(), found.end(), first) == found.end())
       found.push_back(first);

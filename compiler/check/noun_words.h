@@ -7,7 +7,8 @@
 
 namespace probe::sema {
 
-// Whether a noun may be one of several: the scene has furniture, or two objects have one name.
+// Whether a noun may be one of several: the scene has furniture, or names that end with one noun
+// beside words that say "the".
 bool has_nouns_of_several(const Model& model, const Task& task);
 
 // Reports the first noun of the instruction that leaves open which part or object is meant; true

@@ -1,6 +1,7 @@
 #include "compiler/check/said.h"
 
 #include <algorithm>
+#include <array>
 
 #include "compiler/define/template.h"
 #include "runtime/base/nouns.h"
@@ -22,18 +23,37 @@ bool begins(const std::vector<std::string>& name, const std::vector<Said::Word>&
 
 }  // namespace
 
-std::vector<std::string> folded_words(std::string_view text) {
+std::vector<Said::Word> words_in(std::string_view text) {
   constexpr std::string_view kSigns = ".,;:!?()\"'";
-  std::vector<std::string> words;
+  std::vector<Said::Word> words;
   for (std::size_t at = 0; (at = text.find_first_not_of(' ', at)) < text.size();) {
     const std::size_t end = std::min(text.find(' ', at), text.size());
     std::string_view word = text.substr(at, end - at);
     at = end;
     const std::size_t begin = word.find_first_not_of(kSigns);
     if (begin == word.npos) continue;
-    word = word.substr(begin, word.find_last_not_of(kSigns) + 1 - begin);
-    words.push_back(fold_case(word));
+    const std::size_t last = word.find_last_not_of(kSigns);
+    words.push_back({.text = fold_case(word.substr(begin, last + 1 - begin)),
+                     .of = {},
+                     .ends = last + 1 < word.size()});
   }
+  return words;
+}
+
+bool may_follow_noun(std::string_view word) {
+  constexpr auto kAfter = std::to_array<std::string_view>(
+      {"in",      "into",  "inside", "on",      "onto",  "to",     "towards", "from",   "of",
+       "off",     "over",  "under",  "above",   "below", "behind", "beside",  "near",   "with",
+       "without", "by",    "at",     "between", "and",   "or",     "not",     "than",   "up",
+       "down",    "then",  "first",  "before",  "after", "while",  "until",   "around", "against",
+       "is",      "as",    "so",     "that",    "where", "when",   "instead", "please", "alone",
+       "away",    "there", "but",    "should"});
+  return std::find(kAfter.begin(), kAfter.end(), word) != kAfter.end();
+}
+
+std::vector<std::string> folded_words(std::string_view text) {
+  std::vector<std::string> words;
+  for (Said::Word& word : words_in(text)) words.push_back(std::move(word.text));
   return words;
 }
 
@@ -70,11 +90,11 @@ Said said_by(const Model& model, const Task& task) {
   for (const Template::Part& part : say.parts) {
     if (part.slot) {
       const auto meant = meant_by(model, task, say, *part.slot);
-      said.words.push_back({{}, Things(meant.begin(), meant.end())});
+      said.words.push_back(
+          {.text = {}, .of = Things(meant.begin(), meant.end()), .ends = false});
       continue;
     }
-    for (std::string& word : folded_words(part.literal))
-      said.words.push_back({std::move(word), {}});
+    for (Said::Word& word : words_in(part.literal)) said.words.push_back(std::move(word));
   }
   struct Called {
     ObjectId thing;

@@ -16,6 +16,7 @@ struct Said {
   struct Word {
     std::string text;  // folded, without the signs around it; empty of a slot
     Things of;         // what a slot means, or a name that begins here
+    bool ends = false;  // a sign follows
   };
   std::vector<Word> words;
 
@@ -33,6 +34,12 @@ Said said_by(const Model& model, const Task& task);
 std::vector<ObjectId> nameable(const Model& model, const Task& task);
 
 // In lower case, at blanks, without the signs around words.
+std::vector<Said::Word> words_in(std::string_view text);
+
+// Whether what stands before this folded word may be a noun: "on", "and", not "opener".
+bool may_follow_noun(std::string_view word);
+
+// The same words alone.
 std::vector<std::string> folded_words(std::string_view text);
 
 }  // namespace probe::sema

@@ -67,6 +67,28 @@ TEST_CASE("a name of several objects says which of them") {
         std::string::npos);
 }
 
+TEST_CASE("a noun at the end of several names says which of them") {
+  const auto told = [](const std::string& words) {
+    return first_line(test::analyze_with_suite(
+                          "object coke like blue { name \"coke can\" }\n"
+                          "object pepsi like blue { name \"pepsi can\" }\n"
+                          "task t like red_on_tray { distractors coke, pepsi; say \"" +
+                          words + "\" }\n")
+                          ->said());
+  };
+  const std::string open = "error[P0402]: \"the can\" denotes 2 objects in `t`";
+  CHECK(told("put the can on {the target}, {the source}") == open);
+  CHECK(told("take the can. Put it on {the target}, {the source}") == open);
+  CHECK(told("{the source}, {the target} and the can") == open);
+  CHECK(told("put the coke can on {the target}, {the source}") == "");
+  // The one that was named before; another thing; one of them; all of them; P1203's.
+  CHECK(told("take the coke can and put the can on {the target}, {the source}") == "");
+  CHECK(told("put the can opener on {the target}, {the source}") == "");
+  CHECK(told("put a can on {the target}, {the source}") == "");
+  CHECK(told("put the cans on {the target}, {the source}") == "");
+  CHECK(told("take the can on the left to {the target}, {the source}") != open);
+}
+
 TEST_CASE("words for a part are those of one that success measures") {
   const auto said_of = [](const std::string& words) {
     return test::analyze_with_suite(
