@@ -15,6 +15,7 @@ struct Band {
 };
 
 constexpr Band kSide{0.001, 1, "1mm to 1m"};
+constexpr Band kMass{1e-4, 100, "0.0001kg to 100kg"};
 constexpr Band kDensity{5, 150'000, "5kg/m3 to 150000kg/m3"};
 constexpr Band kReach{0.02, 3, "2cm to 3m"};
 constexpr Band kNear{0, 1, "at most 1m"};
@@ -97,6 +98,10 @@ struct Magnitudes {
     point(stmt.high, kSpread, "a corner of a box");
   }
   void operator()(const syntax::DensityStmt& stmt) { check(stmt.value, kDensity, "a density"); }
+  void operator()(const syntax::MassStmt& stmt) {
+    check(stmt.value, kMass, "a mass");
+    if (stmt.centre) point(*stmt.centre, kSpread, "a centre of mass");
+  }
   void operator()(const syntax::FrictionStmt& stmt) { check(stmt.value, kFriction, "a friction"); }
   void operator()(const syntax::RestStmt& stmt) { poses(stmt.poses); }
   void operator()(const syntax::OrientStmt& stmt) { poses(stmt.poses); }

@@ -205,7 +205,7 @@ bool is_same_body(const Object& a, const Object& b) {
       (a.texture && !a.texture->is_same(*b.texture)))
     return false;
   return a.mesh.text == b.mesh.text && a.box_min == b.box_min && a.box_max == b.box_max &&
-         a.density == b.density && a.friction == b.friction;
+         a.density == b.density && a.mass == b.mass && a.friction == b.friction;
 }
 
 // How many objects have a role.

@@ -69,12 +69,16 @@ struct FixtureReader {
     said.rest = read_either(context, stmt.rest, dim::kAngle, dim::kLength,
                             {"a spring rests at a length, or at an angle where it turns",
                              plan::Magnitude::kJointPosition});
+    said.armature = read_either(
+        context, stmt.armature, dim::kInertia, dim::kMass,
+        {"`armature` is in kg, or in kgm2 where it turns", plan::Magnitude::kArmature});
     said.start = read_either(context, stmt.start, dim::kAngle, dim::kLength,
                              {"a joint starts at a length, or at an angle where it turns",
                               plan::Magnitude::kJointPosition});
     if (stmt.friction) not_negative(said.friction, *stmt.friction);
     if (stmt.damping) not_negative(said.damping, *stmt.damping);
     if (stmt.stiffness) not_negative(said.stiffness, *stmt.stiffness);
+    if (stmt.armature) not_negative(said.armature, *stmt.armature);
     if (stmt.start) said.start_span = stmt.start->span;
     std::erase_if(fixture.said, [&](const Said& old) { return old.joint.text == said.joint.text; });
     fixture.said.push_back(std::move(said));
@@ -255,7 +259,7 @@ std::vector<double> joint_starts_in_all(const Model& model, const Task& task) {
 bool same_fixture(const Fixture& a, const Fixture& b) {
   const auto same_joint = [](const Fixture::Joint& x, const Fixture::Joint& y) {
     return x.name == y.name && x.friction == y.friction && x.damping == y.damping &&
-           x.stiffness == y.stiffness && x.rest == y.rest;
+           x.stiffness == y.stiffness && x.rest == y.rest && x.armature == y.armature;
   };
   return a.urdf.text == b.urdf.text && a.position == b.position && a.turn == b.turn &&
          a.friction == b.friction && std::ranges::equal(a.joints, b.joints, same_joint);

@@ -103,6 +103,7 @@ void take(Context& context, const Said& said, Fixture::Joint& joint) {
   value(said.damping, dim::kAngularDamping, dim::kLinearDamping, joint.damping);
   value(said.stiffness, dim::kAngularStiffness, dim::kLinearStiffness, joint.stiffness);
   value(said.rest, dim::kAngle, dim::kLength, joint.rest);
+  value(said.armature, dim::kInertia, dim::kMass, joint.armature);
   value(said.start, dim::kAngle, dim::kLength, joint.start);
 }
 

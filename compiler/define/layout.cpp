@@ -221,6 +221,11 @@ struct LayoutReader {
   }
   void operator()(const syntax::DropStmt& stmt) {
     layout.has_drop = true;
+    layout.begins_placed = stmt.none;
+    if (stmt.none) {
+      layout.drop = layout.settle = 0;
+      return;
+    }
     layout.drop = read_si(context, stmt.height, dim::kLength,
                           {"`drop` takes a height", plan::Magnitude::kLength})
                       .value_or(0);
@@ -266,11 +271,12 @@ void require_rest(Context& context, const Layout& layout) {
         .report(Situation::kStatementMissing, layout.span,
                 "layout `" + layout.name + "` has no `drop`")
         .help("write how objects are put down, such as `drop 50cm settle 0.5s`");
-  } else if (layout.settle == 0) {
+  } else if (layout.settle == 0 && !layout.begins_placed) {
     context
         .report(Situation::kStatementMissing, layout.span,
                 "layout `" + layout.name + "` has no `settle`")
-        .help("without time to come to rest, such as `settle 0.5s`, objects are judged in the air");
+        .help("without time to come to rest, such as `settle 0.5s`, objects are judged in the air; "
+              "`drop none` says that an episode begins so");
   }
 }
 

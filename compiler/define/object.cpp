@@ -14,6 +14,7 @@
 #include "runtime/base/utf8.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/limits.h"
+#include "runtime/plan/masses.h"
 #include "runtime/plan/regions.h"
 
 namespace probe::sema {
@@ -25,7 +26,8 @@ struct ObjectReader {
   const syntax::File& file;
   Object& object;
   bool has_is = false, has_maybe = false, has_seen = false;
-  Span look = {};  // the first `paint` or `texture` here
+  Span look = {};    // the first `paint` or `texture` here
+  Span weight = {};  // the first `density` or `mass`
   bool says_color = false;
 
   void facts(const std::vector<syntax::Name>& names, Truth truth, bool& begun) {
@@ -87,8 +89,44 @@ struct ObjectReader {
     }
     object.box_is_read = true;
   }
-  void operator()(const syntax::DensityStmt& stmt) {
+  // What it weighs is said by one of these two; in a copy the later takes the other's place.
+  void begin_weight(const Span& span) {
     object.has_density = true;
+    object.density = 0;
+    object.unscaled.mass.reset();
+    if (!weight.is_none())
+      context
+          .report(Code::P0203, span,
+                  "`" + object.name + "` has a density or a mass, not both")
+          .label(weight, "first said here");
+    weight = span;
+  }
+  void operator()(const syntax::MassStmt& stmt) {
+    begin_weight(stmt.span);
+    const auto mass = read_positive(context, stmt.value, dim::kMass,
+                                    {"`mass` takes a mass", plan::Magnitude::kMass});
+    if (!mass) return;
+    Mass& read = object.unscaled.mass.emplace();
+    read.mass = *mass;
+    if (!stmt.centre) return;
+    const auto centre = read_point(context, *stmt.centre, 3, 3, dim::kLength,
+                                   {"`com` takes lengths", plan::Magnitude::kPlace});
+    const auto inertia = read_point(context, *stmt.inertia, 3, 6, dim::kInertia,
+                                    {"`inertia` takes moments in kgm2", plan::Magnitude::kInertia});
+    if (!centre || !inertia) return;
+    if (inertia->size() != 3 && inertia->size() != 6) {
+      context.report(Situation::kInertia, stmt.inertia->span,
+                     "an inertia is three moments, or six: xx, yy, zz, xy, xz, yz");
+      return;
+    }
+    Mass::Spread& spread = read.spread.emplace();
+    assign(spread.centre, centre);
+    assign(spread.inertia, inertia);
+    if (const auto wrong = plan::inertia_fault(spread.inertia))
+      context.report(Situation::kInertia, stmt.inertia->span, *wrong);
+  }
+  void operator()(const syntax::DensityStmt& stmt) {
+    begin_weight(stmt.span);
     object.density = read_positive(context, stmt.value, dim::kDensity,
                                    {"`density` takes a density", plan::Magnitude::kDensity})
                          .value_or(1);
@@ -213,6 +251,15 @@ void grow(Object& object) {
   object.box_min = times(object.unscaled.box_min);
   object.box_max = times(object.unscaled.box_max);
   object.regions = object.unscaled.regions;
+  object.mass = object.unscaled.mass;
+  if (object.mass) {
+    const double s = object.scale;
+    object.mass->mass *= s * s * s;
+    if (auto& spread = object.mass->spread) {
+      spread->centre = times(spread->centre);
+      for (double& moment : spread->inertia) moment *= s * s * s * s * s;
+    }
+  }
   for (Region& region : object.regions) {
     region.low = times(region.low);
     region.high = times(region.high);

@@ -1,4 +1,6 @@
 // Fixtures with joints and regions as records.
+#include <algorithm>
+
 #include "compiler/emit/emitter.h"
 
 namespace probe::emit {
@@ -42,6 +44,11 @@ void Emitter::add_fixture(sema::FixtureId id) {
   }
   record.joints =
       plan::append(records().fixture_joints, std::span<const plan::FixtureJointRecord>(joints));
+  if (std::ranges::any_of(fixture.joints, [](const auto& joint) { return joint.armature != 0; })) {
+    std::vector<double> armatures;
+    for (const sema::Fixture::Joint& joint : fixture.joints) armatures.push_back(joint.armature);
+    record.armatures = plan::append(records().reals, std::span<const double>(armatures));
+  }
   std::vector<plan::PartRecord> parts;
   for (const sema::Fixture::Part& part : fixture.parts) {
     plan::PartRecord row;

@@ -31,6 +31,15 @@ void Emitter::add_object(ObjectId id) {
   record.box_min = object.box_min;
   record.box_max = object.box_max;
   record.density = object.density;
+  if (object.mass) {
+    plan::MassRecord mass;
+    mass.mass = object.mass->mass;
+    if (object.mass->spread) {
+      mass.centre = object.mass->spread->centre;
+      mass.inertia = object.mass->spread->inertia;
+    }
+    record.mass = plan::append(records().masses, std::span<const plan::MassRecord>(&mass, 1));
+  }
   record.friction = object.friction;
   if (object.scale != 1) record.scale = object.scale;
   if (object.paint) {

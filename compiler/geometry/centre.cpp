@@ -9,6 +9,10 @@ namespace probe::sema {
 const Centre& Centres::of(const Object& object) {
   const auto [at, is_new] = known_.try_emplace(object.name);
   if (!is_new) return at->second;
+  if (object.mass && object.mass->spread) {
+    at->second.at = Vec3(object.mass->spread->centre.data());
+    return at->second;
+  }
   const std::filesystem::path path =
       std::filesystem::path(asset_root_) / "objects" / object.mesh.text / "collision.obj";
   if (const auto shape = scene::load_collision_mesh(path.string(), Vec3::Constant(object.scale))) {

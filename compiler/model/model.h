@@ -116,6 +116,18 @@ struct OfFixture {
   bool is_part() const { return !region.has_value(); }
 };
 
+// What a thing weighs where it is not spread evenly by its density.
+struct Mass {
+  double mass = 0;  // kg
+  struct Spread {
+    std::array<double, 3> centre{};   // m, model frame
+    std::array<double, 6> inertia{};  // kg m2 about the centre: xx yy zz xy xz yz
+    bool operator==(const Spread&) const = default;
+  };
+  std::optional<Spread> spread;  // none: evenly over what is felt
+  bool operator==(const Mass&) const = default;
+};
+
 struct Object {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
@@ -131,12 +143,14 @@ struct Object {
   struct Unscaled {  // as written
     std::array<double, 3> box_min{}, box_max{};
     std::vector<Region> regions;
+    std::optional<Mass> mass;
   } unscaled;
   std::optional<Paint> paint;
   std::optional<Cover> texture;
   Span box_span;             // of the statement
   bool box_is_read = false;  // else something was wrong with it, and was reported
-  double density = 0;
+  double density = 0;        // 0 where `mass` is said
+  std::optional<Mass> mass;  // with its scale
   double friction = 0;
   std::vector<std::vector<std::uint32_t>> values;  // by attribute; empty: unknown
   std::vector<Truth> facts;                        // by fact
@@ -235,7 +249,7 @@ struct Fixture {
   struct Said {
     Spelled joint;
     Span span;
-    std::optional<Quantity> friction, damping, stiffness, rest, start;
+    std::optional<Quantity> friction, damping, stiffness, rest, armature, start;
     Span start_span;
     bool stay = false;
   };
@@ -244,7 +258,7 @@ struct Fixture {
     std::string name;
     bool slides = false, is_endless = false;
     double lower = 0, upper = 0;
-    double friction = 0, damping = 0, stiffness = 0, rest = 0, start = 0;
+    double friction = 0, damping = 0, stiffness = 0, rest = 0, armature = 0, start = 0;
     // Travel counts from where it is closed.
     bool closes_at_upper() const { return !is_endless && plan::closes_at_upper(lower, upper); }
   };
@@ -401,6 +415,7 @@ struct Layout {
   double joints_jitter = 0;  // rad, of the robot's turning joints
   std::vector<JointStart> joint_starts;
   bool has_drop = false;
+  bool begins_placed = false;  // `drop none`
   double drop = 0;
   double settle = 0;
   std::optional<std::uint64_t> expect;

@@ -356,6 +356,11 @@ struct DensityStmt {
   Span span;
   Quantity value;
 };
+struct MassStmt {  // `mass 0.2kg`, `mass 0.2kg com (..) inertia (xx, yy, zz, xy, xz, yz)`
+  Span span;
+  Quantity value;
+  std::optional<Point> centre, inertia;  // both or neither
+};
 struct FrictionStmt {
   Span span;
   Quantity value;
@@ -421,8 +426,8 @@ struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
   std::optional<Text> text;  // of a fixture's: in instructions
 };
 using ObjectStmt =
-    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, FrictionStmt, ScaleStmt,
-                 PaintStmt, TextureStmt, IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt,
+    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, MassStmt, FrictionStmt,
+                 ScaleStmt, PaintStmt, TextureStmt, IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt,
                  RegionStmt, NameStmt, PhraseStmt, AttributeStmt>;
 struct ObjectDecl {
   Name name;
@@ -595,7 +600,7 @@ struct FixtureAtStmt {  // `at (-10cm, 25cm, 87cm) yaw 180deg`
 struct FixtureJointStmt {  // `joint top friction 2N damping 5Ns/m stiffness 30N/m at 0cm start 4cm`
   Span span;
   Name joint;
-  std::optional<Quantity> friction, damping, stiffness, rest, start;
+  std::optional<Quantity> friction, damping, stiffness, rest, armature, start;
   bool stay = false;
 };
 struct PartStmt {  // `part top_drawer link top name "top drawer"`
@@ -722,6 +727,7 @@ struct DropStmt {
   Span span;
   Quantity height;
   std::optional<Quantity> settle;
+  bool none = false;  // an episode begins as things are placed
 };
 struct StartsStmt {
   Span span;

@@ -37,6 +37,7 @@ FixtureBodyStmt Parser::fixture_joint() {
     expect_word("at");
     out.rest = quantity();
   }
+  if (accept_word("armature")) out.armature = quantity();
   if (accept_word("start")) out.start = quantity();
   out.stay = accept_word("stay");
   return out;

@@ -79,6 +79,8 @@ LayoutStmt Parser::layout_joints() {
 
 LayoutStmt Parser::layout_drop() {
   DropStmt out;
+  out.none = accept_word("none");
+  if (out.none) return out;
   out.height = quantity();
   if (accept_word("settle")) out.settle = quantity();
   return out;

@@ -37,6 +37,16 @@ ObjectStmt Parser::object_box() {
 
 ObjectStmt Parser::object_density() { return DensityStmt{{}, quantity()}; }
 
+ObjectStmt Parser::object_mass() {
+  MassStmt out;
+  out.value = quantity();
+  if (!accept_word("com")) return out;
+  out.centre = point();
+  expect_word("inertia");
+  out.inertia = point();
+  return out;
+}
+
 ObjectStmt Parser::object_friction() { return FrictionStmt{{}, quantity()}; }
 
 ObjectStmt Parser::object_scale() { return ScaleStmt{{}, quantity()}; }

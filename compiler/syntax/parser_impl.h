@@ -138,6 +138,7 @@ class Parser {
   ObjectStmt object_mesh();
   ObjectStmt object_box();
   ObjectStmt object_density();
+  ObjectStmt object_mass();
   ObjectStmt object_friction();
   ObjectStmt object_scale();
   ObjectStmt object_paint();

@@ -193,14 +193,11 @@ class Conversion {
     text.friction = asset_.friction;
     if (!(mass_.mass > 0)) return Failure{Fault::kAsset, "it weighs nothing", options_.file};
     text.density = mass_.mass / shape.volume;
-    // The same mass spread evenly: how far off it is from what the file says.
+    // What is as heavy everywhere is said by its density, all else as the file has it.
     const double off = (shape.center_of_mass - mass_.center).norm();
     const double turn =
         (text.density * shape.unit_inertia - mass_.inertia).norm() / mass_.inertia.norm();
-    if (off > 1e-6 || turn > 1e-4)
-      asset_.notes.push_back(fmt::format(
-          "{}: its mass is spread evenly over what is felt: centre {:.2g} mm, inertia {:.2g} % off",
-          options_.file, 1000 * off, 100 * turn));
+    if (off > 1e-7 || turn > 1e-6) text.mass = mass_;
     std::set<std::string> taken;
     add_sites(link, "", taken);
     asset_.declaration = object_text(text, asset_.sites);
@@ -219,9 +216,6 @@ class Conversion {
       made.slides = joint.motion == mjcf::Motion::kSlide;
       made.lower = joint.limited ? joint.lower : 0;
       made.upper = joint.limited ? joint.upper : 0;
-      if (joint.armature > 0)
-        note(joint.at, fmt::format("an armature of {:g} is not kept: joints of fixtures have none",
-                                   joint.armature));
       acting.push_back(&joint);
       asset_.joints.push_back(std::move(made));
     }

@@ -47,6 +47,23 @@ std::string point(const Vec3& p) {
   return "(" + cm(p.x()) + ", " + cm(p.y()) + ", " + cm(p.z()) + ")";
 }
 
+// Nine digits: a millionth of a milligram of a bowl. Products that rounding left are none.
+std::string mass_text(const mjcf::MassProperties& m) {
+  const double least = 1e-9 * m.inertia.diagonal().maxCoeff();
+  const auto centre = [](double metres) {
+    return fmt::format("{:.9g}cm", std::abs(metres) < 1e-12 ? 0.0 : 100 * metres);
+  };
+  const auto moment = [&](Eigen::Index i, Eigen::Index k) {
+    const double value = m.inertia(i, k);
+    return fmt::format("{:.9g}kgm2", std::abs(value) < least ? 0.0 : value);
+  };
+  std::string inertia = moment(0, 0) + ", " + moment(1, 1) + ", " + moment(2, 2);
+  const std::string products = moment(0, 1) + ", " + moment(0, 2) + ", " + moment(1, 2);
+  if (products != "0kgm2, 0kgm2, 0kgm2") inertia += ", " + products;
+  return fmt::format("mass {:.9g}kg com ({}, {}, {}) inertia ({})", m.mass, centre(m.center.x()),
+                     centre(m.center.y()), centre(m.center.z()), inertia);
+}
+
 std::string corners(const Vec3& low, const Vec3& high) { return point(low) + " .. " + point(high); }
 
 std::string degrees(double radians) {
@@ -151,8 +168,10 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites) {
   std::string out = fmt::format("object {} {{\n  mesh \"{}\"\n  box {}\n", object.name,
                                 object.folder, corners(object.low, object.high));
-  out += fmt::format("  density {}kg/m3; friction {}; name \"{}\"\n", decimals(object.density, 6),
-                     decimals(object.friction, 6), object.called);
+  const std::string weight =
+      object.mass ? mass_text(*object.mass) : "density " + decimals(object.density, 6) + "kg/m3";
+  out += fmt::format("  {}; friction {}; name \"{}\"\n", weight, decimals(object.friction, 6),
+                     object.called);
   for (const MujocoSite& site : sites) out += region(site, "");
   return out + "}\n";
 }
@@ -174,6 +193,8 @@ std::string fixture_text(const FixtureText& fixture, const std::vector<Described
       line += fmt::format(" stiffness {}{} at {}", decimals(acts.stiffness, 6),
                           slides ? "N/m" : "Nm/rad",
                           slides ? cm(acts.rest) : degrees(acts.rest) + "deg");
+    if (acts.armature > 0)
+      line += fmt::format(" armature {}{}", decimals(acts.armature, 9), slides ? "kg" : "kgm2");
     if (!line.empty()) out += "  joint " + joints[i].name + line + "\n";
   }
   for (std::size_t i = 1; i < links.size(); ++i) {

@@ -1,6 +1,7 @@
 // The texts about a thing: its URDF and its declaration.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct ObjectText {
   std::string name, folder, called;
   Vec3 low, high;
   double density = 0;  // kg/m3
+  std::optional<mjcf::MassProperties> mass;  // in place of the density, in the thing's frame
   double friction = 1;
 };
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites);

@@ -33,6 +33,7 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
     json["fixture"] = plan.text(fixture.name);
     json["urdf"] = plan.text(plan.assets()[fixture.urdf].path);
     json["joints"] = Json::array();
+    const auto armatures = plan.armatures(fixture);
     for (const plan::FixtureJointRecord& joint : plan.joints(fixture)) {
       json["joints"].push_back({{"joint", plan.text(joint.joint)},
                                 {"moves", plan::slides(joint) ? "slides" : "turns"},
@@ -44,6 +45,8 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
                                 {"damping", joint.damping},
                                 {"stiffness", joint.stiffness},
                                 {"rest", joint.rest}});
+      if (!armatures.empty())
+        json["joints"].back()["armature"] = armatures[json["joints"].size() - 1];
     }
     json["parts"] = Json::array();
     for (const plan::PartRecord& part : plan.parts(fixture)) {

@@ -328,9 +328,12 @@ std::string describe_text(const Json& task) {
   word("light");
   for (const std::string& fixture : fixture_lines(task)) line("fixture", fixture);
   if (task.contains("regions")) line("regions", joined(names_of(task["regions"]), "none"));
-  line("layout",
-       fmt::format("{} starts, dropped from {} cm, settled for {} s", task["starts"].size(),
-                   tenth(task["drop_m"].get<double>(), 100), task["settle_s"].get<double>()));
+  const double settle = task["settle_s"].get<double>();
+  line("layout", settle == 0
+                     ? fmt::format("{} starts, begun as placed", task["starts"].size())
+                     : fmt::format("{} starts, dropped from {} cm, settled for {} s",
+                                   task["starts"].size(),
+                                   tenth(task["drop_m"].get<double>(), 100), settle));
   if (task.contains("drawn")) {
     for (const Json& drawn : task["drawn"]) {
       std::string starts;

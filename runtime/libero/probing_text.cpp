@@ -82,7 +82,7 @@ class TaskAsker {
     };
     const auto add_table = [&](std::string_view own, std::string table, std::string_view more) {
       const std::string path = fmt::format("starts/{}_{}.csv", id, own);
-      add(own, fmt::format("{{ starts \"{}\"; drop 1cm settle 0.5s }}", path), more);
+      add(own, fmt::format("{{ starts \"{}\"; drop none }}", path), more);
       tables.push_back({path, std::move(table)});
     };
     add("moved", fmt::format("like {} {{ jitter 1cm }}", id), "");

@@ -118,7 +118,7 @@ class SuiteWriter {
     for (char& c : other) {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
-    body += fmt::format("layout {} {{ starts \"starts/{}.csv\"; drop 1cm settle 0.5s }}\n", id, id);
+    body += fmt::format("layout {} {{ starts \"starts/{}.csv\"; drop none }}\n", id, id);
     body += fmt::format("metrics {}{} {{ success = at end ({}); ends when {} }}\n", id,
                         metrics_like(roles), goal, goal);
     add_depth(task, *stage.row, id, body);

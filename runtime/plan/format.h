@@ -81,15 +81,25 @@ struct ObjectRecord {
   std::uint32_t collision = kNone;  // kAssets
   std::array<double, 3> box_min{};  // metres, model frame
   std::array<double, 3> box_max{};
-  double density = 0;                   // kg/m3
+  double density = 0;                   // kg/m3; 0 where it has a mass
   double friction = 0;                  // of the object's own material
   double scale = 0;                     // of its meshes; the box is scaled already; 0: as they are
   Slice cover;                          // kCovers: a texture on all of it, or none
   std::array<std::uint8_t, 4> paint{};  // sRGB and 1 where it is painted, else 0
   std::uint32_t zero = 0;
-  std::uint64_t zero2[2] = {};
+  Slice mass;  // kMasses: its own, or none
+  std::uint64_t zero2[1] = {};
 };
 static_assert(sizeof(ObjectRecord) == 128);
+
+// What an object weighs, its scale in it.
+struct MassRecord {
+  double mass = 0;                  // kg
+  std::array<double, 3> centre{};   // m, model frame
+  std::array<double, 6> inertia{};  // kg m2 about the centre: xx yy zz xy xz yz; all 0: the mass is
+                                    // spread evenly over what is felt, and there is no centre
+};
+static_assert(sizeof(MassRecord) == 80);
 
 enum class Control : std::uint32_t {
   kEeDeltaPose = 1,
@@ -276,7 +286,8 @@ struct FixtureRecord {
   Slice joints;                      // kFixtureJoints: all that move, in the URDF's order
   Slice parts;                       // kParts: all links with collision, in the URDF's order
   Slice meshes;                      // kList of kAssets, as a robot's
-  std::uint64_t zero2[3] = {};
+  Slice armatures;  // kReals: kg or kg m2 by joint, or none
+  std::uint64_t zero2[2] = {};
 };
 static_assert(sizeof(FixtureRecord) == 128);
 

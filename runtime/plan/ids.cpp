@@ -115,6 +115,10 @@ Sha256 IdHasher::object(std::uint32_t index) {
   if (o.scale != 0) h.text("scale").f64(o.scale);
   if (o.paint[3] != 0) h.text("paint").bytes(std::as_bytes(std::span(o.paint)));
   if (o.cover.count != 0) hash_covers(h, o.cover);
+  if (o.mass.count != 0) {
+    const MassRecord& mass = tables_.masses[o.mass.first];
+    h.text("mass").f64(mass.mass).f64s(mass.centre).f64s(mass.inertia);
+  }
   known = h.finish();
   return *known;
 }
@@ -162,6 +166,7 @@ Sha256 IdHasher::fixture(const FixtureRecord& f) const {
     h.text(tables_.text(joint.joint)).u32(joint.motion).f64(joint.lower).f64(joint.upper);
     h.f64(joint.friction).f64(joint.damping).f64(joint.stiffness).f64(joint.rest);
   }
+  if (f.armatures.count != 0) h.text("armature").f64s(slice_of(tables_.reals, f.armatures));
   return h.finish();
 }
 

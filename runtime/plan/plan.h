@@ -62,6 +62,14 @@ class Plan {
     return camera.sensor.count == 0 ? nullptr : &tables_.sensors[camera.sensor.first];
   }
   // Null: the object looks as its mesh does.
+  // Null: by its density.
+  const MassRecord* mass(const ObjectRecord& object) const {
+    return object.mass.count == 0 ? nullptr : &tables_.masses[object.mass.first];
+  }
+  // By joint; empty: none has any.
+  std::span<const double> armatures(const FixtureRecord& fixture) const {
+    return slice_of(tables_.reals, fixture.armatures);
+  }
   const CoverRecord* cover(const ObjectRecord& object) const {
     return object.cover.count == 0 ? nullptr : &tables_.covers[object.cover.first];
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "runtime/plan/masses.h"
 #include "runtime/plan/verify.h"
 #include "runtime/plan/verify_records.h"
 
@@ -60,7 +61,10 @@ Status RecordCheck::check(const ObjectRecord& o) const {
       return fail(Rule::kBox, &o.box_min[i], "a box has a positive extent on each axis");
     PROBE_TRY(check_magnitude(o.box_max[i] - o.box_min[i], Magnitude::kExtent, o.box_min[i]));
   }
-  PROBE_TRY(check_positive(o.density, "a density"));
+  PROBE_TRY(check_slice(o.mass, t.masses.size(), "MASS"));
+  if (o.mass.count == 0) PROBE_TRY(check_positive(o.density, "a density"));
+  if (o.mass.count != 0 && o.density != 0)
+    return fail(Rule::kMass, &o.density, "an object has a density or a mass, not both");
   PROBE_TRY(check_magnitude(o.density, Magnitude::kDensity));
   PROBE_TRY(check_friction(o.friction));
   if (o.scale != 0 && !(o.scale >= kMinScale && o.scale <= kMaxScale))
@@ -72,6 +76,19 @@ Status RecordCheck::check(const ObjectRecord& o) const {
   PROBE_TRY(check_slice(o.cover, t.covers.size(), "COVR"));
   PROBE_TRY(check_zero(o.zero));
   return check_zero(o.zero2);
+}
+
+Status RecordCheck::check(const MassRecord& m) const {
+  PROBE_TRY(check_positive(m.mass, "a mass"));
+  PROBE_TRY(check_magnitude(m.mass, Magnitude::kMass));
+  PROBE_TRY(check_magnitude(m.centre, Magnitude::kPlace));
+  PROBE_TRY(check_magnitude(m.inertia, Magnitude::kInertia));
+  if (m.inertia == std::array<double, 6>{}) {
+    if (m.centre == std::array<double, 3>{}) return {};
+    return fail(Rule::kMass, &m.centre, "a mass with a centre has an inertia");
+  }
+  if (const auto wrong = inertia_fault(m.inertia)) return fail(Rule::kMass, &m.inertia, *wrong);
+  return {};
 }
 
 Status RecordCheck::check(const DriveRecord& d) const {

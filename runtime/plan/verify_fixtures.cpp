@@ -30,6 +30,15 @@ Status RecordCheck::check(const FixtureRecord& f) const {
   for (const std::uint32_t& mesh : slice_of(t.list, f.meshes)) {
     PROBE_TRY(check_index(mesh, t.assets.size(), "ASST"));
   }
+  PROBE_TRY(check_slice(f.armatures, t.reals.size(), "REAL"));
+  if (f.armatures.count != 0 && f.armatures.count != f.joints.count)
+    return fail(Rule::kFixtureArmature, &f.armatures,
+                fmt::format("a fixture has an armature for each of its {} joints or none, not {}",
+                            f.joints.count, f.armatures.count));
+  for (const double& armature : slice_of(t.reals, f.armatures)) {
+    PROBE_TRY(check_not_negative(armature, "an armature"));
+    PROBE_TRY(check_magnitude(armature, Magnitude::kArmature));
+  }
   return check_zero(f.zero2);
 }
 

@@ -344,6 +344,23 @@ CollisionShape assemble_shape(std::vector<HullPart> parts) {
   return shape;
 }
 
+CollisionShape shape_weighing(const CollisionShape& shape, double mass, const Vec3& center,
+                              const Mat3& inertia) {
+  CollisionShape out = shape;
+  const Vec3 shift = shape.center_of_mass - center;
+  out.center_of_mass = center;
+  out.unit_inertia = inertia * (shape.volume / mass);
+  out.bounding_radius = 0;
+  for (ConvexPart& part : out.parts) {
+    for (Vec3& v : part.vertices) {
+      v += shift;
+      out.bounding_radius = std::max(out.bounding_radius, v.norm() + part.round);
+    }
+    derive(&part);
+  }
+  return out;
+}
+
 Result<CollisionShape> make_collision_shape(const std::vector<std::vector<Vec3>>& components,
                                             const std::string& name, const HullOptions& options) {
   std::vector<std::vector<Vec3>> groups;

@@ -53,6 +53,11 @@ struct PlacedShape {
 };
 CollisionShape join_shapes(std::vector<PlacedShape> shapes);
 
+// The same shape about another centre of mass: with the density mass / volume it has this inertia
+// about it, kg m2 in the axes of the model frame.
+CollisionShape shape_weighing(const CollisionShape& shape, double mass, const Vec3& center,
+                              const Mat3& inertia);
+
 // One part: closed, convex, at most 64 vertices, volume and moments about the origin of the points'
 // frame.
 struct HullPart {

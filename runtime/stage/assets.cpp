@@ -194,7 +194,21 @@ class SharedAssets::Loader {
     if (object.collision == plan::kNone || assets_.object_shapes_.contains(index)) return {};
     PROBE_TRY(shape(object.collision));
     assets_.object_shapes_[index] = assets_.shape(object.collision);
-    if (object.scale == 0) return {};
+    if (object.scale != 0) PROBE_TRY(scaled_shape(index, scale));
+    if (const plan::MassRecord* mass = plan_.mass(object);
+        mass != nullptr && mass->inertia != std::array<double, 6>{}) {
+      const auto& i = mass->inertia;
+      Mat3 inertia;
+      inertia << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
+      assets_.object_shapes_[index] =
+          std::make_shared<scene::CollisionShape>(scene::shape_weighing(
+              *assets_.object_shapes_[index], mass->mass, to_vec(mass->centre), inertia));
+    }
+    return {};
+  }
+
+  Status scaled_shape(std::uint32_t index, const Vec3& scale) {
+    const plan::ObjectRecord& object = plan_.objects()[index];
     auto scaled = scene::load_collision_mesh(path_of(object.collision), scale, limits());
     if (!scaled) {
       return Failure{scaled.failure().code,

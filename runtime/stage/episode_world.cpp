@@ -114,9 +114,11 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   const auto records = plan_.bodies(task_);
   for (std::size_t i = 0; i < bodies_.objects; ++i) {
     const plan::ObjectRecord& object = plan_.objects()[records[i].index];
-    spec.bodies.push_back({std::string(plan_.text(records[i].name)),
-                           assets_->object_shape(records[i].index), object.density, object.friction,
-                           at.objects[i]});
+    const auto shape = assets_->object_shape(records[i].index);
+    const plan::MassRecord* mass = plan_.mass(object);
+    spec.bodies.push_back({std::string(plan_.text(records[i].name)), shape,
+                           mass == nullptr ? object.density : mass->mass / shape->volume,
+                           object.friction, at.objects[i]});
   }
   if (bodies_.fixture != TaskBodies::kNone) {
     spec.fixtures.push_back({std::string(plan_.text(records[bodies_.fixture].name)),

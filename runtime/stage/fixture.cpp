@@ -10,6 +10,7 @@ Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
   fixture.urdf = std::string(plan.text(plan.assets()[record.urdf].path));
   fixture.base = {to_vec(record.position), to_quat(record.rotation)};
   fixture.friction = record.friction;
+  const auto armatures = plan.armatures(record);
   for (const plan::FixtureJointRecord& joint : plan.joints(record)) {
     world::JointSpec spec;
     spec.joint = std::string(plan.text(joint.joint));
@@ -17,6 +18,7 @@ Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
     spec.damping = joint.damping;
     spec.friction = joint.friction;
     spec.rest = joint.rest;
+    if (!armatures.empty()) spec.armature = armatures[fixture.joints.size()];
     fixture.joints.push_back(std::move(spec));
     fixture.positions.push_back(joint.start);
   }

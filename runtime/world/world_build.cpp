@@ -21,11 +21,14 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 Failure fail(std::string message) { return {Fault::kWorld, std::move(message), ""}; }
 
+// A mass of its own may have moments that were rounded for printing.
+constexpr double kRounded = 2e-3;
+
 bool is_solid(const scene::CollisionShape& shape) {
   if (shape.parts.empty() || !(shape.volume > 0) || !std::isfinite(shape.volume)) return false;
   if (!shape.center_of_mass.allFinite() || !shape.unit_inertia.allFinite()) return false;
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(shape.unit_inertia).eigenvalues();
-  return moments[0] > 0 && moments[0] + moments[1] >= moments[2] * (1 - 1e-9);
+  return moments[0] > 0 && moments[0] + moments[1] >= moments[2] * (1 - kRounded);
 }
 
 Status check_numbers(const WorldSpec& spec) {

@@ -30,6 +30,7 @@ TEST_CASE("fixture, fixture_st: what a text says of joints, parts and regions is
   CHECK(joints[0].damping == 5);
   CHECK(joints[0].start == 0.04);
   CHECK(joints[1].stiffness == 0.5);
+  CHECK(plan.armatures(fixtures[0]).empty());
   // As bodies they are called after their fixture; a part has its own name, a link the URDF's.
   std::string names;
   for (const plan::BodyRecord& body : plan.bodies(built.task("t"))) {
@@ -38,6 +39,25 @@ TEST_CASE("fixture, fixture_st: what a text says of joints, parts and regions is
   }
   CHECK(names ==
         "chest chest.drawer chest.door chest.lid other other.drawer other.door other.lid ");
+}
+
+TEST_CASE("fixture_st: inertia in a joint itself, in the joint's own unit") {
+  const std::string chest(kChest);
+  const Built built(
+      chest +
+      "fixture heavy like chest { joint hinge friction 1Nm armature 0.2kgm2 start -1deg }\n"
+      "scene two like room { fixture heavy }\ntask t like red_on_tray { scene two }\n");
+  const plan::Plan& plan = built.plan();
+  REQUIRE(plan.fixtures().size() == 1);
+  const auto armatures = plan.armatures(plan.fixtures()[0]);
+  CHECK(std::vector<double>(armatures.begin(), armatures.end()) == std::vector<double>{0, 0.2, 0});
+  const auto codes = [&](const std::string& joint) {
+    return analyze_with_suite(chest + "fixture o like chest { joint " + joint + " }\n" +
+                              "scene two like room { fixture o }\n")
+        ->codes();
+  };
+  CHECK(codes("hinge armature 0.2kg").find("P0302") != std::string::npos);
+  CHECK(codes("slide armature -1kg").find("P0304") != std::string::npos);
 }
 
 TEST_CASE("box: two corners, the second above the first on every axis") {

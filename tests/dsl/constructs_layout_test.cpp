@@ -110,6 +110,15 @@ TEST_CASE("layout_st: a copied line for the same object is replaced where it sto
                                        "red 0,10@0 tray 0,-10@0", "red 0,10@90 tray 0,-10@0"});
 }
 
+TEST_CASE("layout_st: with `drop none` an episode begins as things are placed") {
+  const Built built("layout still like pairs { drop none }\nvariant v of red_on_tray { layout still }\n");
+  CHECK(built.task("v").drop == 0);
+  CHECK(built.task("v").settle == 0);
+  CHECK(clean("layout still like pairs { drop none }\nlayout again like still { drop 1cm settle 1s }\n")
+            ->model.layouts.size() > 2);
+  CHECK(analyze_with_suite("layout l like pairs { drop none settle 1s }\n")->codes() == "P0101");
+}
+
 TEST_CASE("layout_st: drop and settle are how long and from where things fall") {
   const Built built(
       "layout high like pairs { drop 25cm settle 2s }\n"

@@ -34,6 +34,53 @@ TEST_CASE(
   CHECK(analyze_with_suite("object o like red { scale 2cm; name \"o\" }\n")->codes() == "P0302");
 }
 
+TEST_CASE(
+    "object_st: `mass` takes the place of `density`, alone or with its centre and its moments, and "
+    "follows `scale`") {
+  const Built built(
+      "object heavy like red { mass 0.2kg }\n"
+      "object top_heavy like red { mass 0.2kg com (0cm, 0cm, 1cm) inertia (2e-4kgm2, 2e-4kgm2, "
+      "1e-4kgm2, 0kgm2, 1e-5kgm2, 0kgm2) }\n"
+      "object large like top_heavy { scale 2 }\n"
+      "object light like large { density 300kg/m3 }\n"
+      "variant heavier of red_on_tray { source heavy }\n"
+      "variant higher of red_on_tray { source top_heavy }\n"
+      "variant larger of red_on_tray { source large }\n"
+      "variant lighter of red_on_tray { source light }\n");
+  const plan::Plan& plan = built.plan();
+  const auto object = [&](const char* task) { return plan.objects()[built.task(task).source]; };
+  CHECK(plan.mass(object("red_on_tray")) == nullptr);
+  const plan::MassRecord* mass = plan.mass(object("heavier"));
+  REQUIRE(mass != nullptr);
+  CHECK(object("heavier").density == 0);
+  CHECK(mass->mass == 0.2);
+  CHECK(mass->inertia == std::array<double, 6>{});
+  mass = plan.mass(object("higher"));
+  REQUIRE(mass != nullptr);
+  CHECK(mass->centre == std::array<double, 3>{0, 0, 0.01});
+  CHECK(mass->inertia == std::array<double, 6>{2e-4, 2e-4, 1e-4, 0, 1e-5, 0});
+  mass = plan.mass(object("larger"));
+  REQUIRE(mass != nullptr);
+  CHECK(mass->mass == doctest::Approx(8 * 0.2));
+  CHECK(mass->centre[2] == 0.02);
+  CHECK(mass->inertia[0] == doctest::Approx(32 * 2e-4));
+  CHECK(plan.mass(object("lighter")) == nullptr);
+  CHECK(object("lighter").density == 300);
+  CHECK(built.task("heavier").axes == bit(plan::Axis::kObjectSource));
+  const auto codes = [](const char* said) {
+    return analyze_with_suite("object o like red { " + std::string(said) + "; name \"o\" }\n")
+        ->codes();
+  };
+  CHECK(codes("mass 0.2kg; density 500kg/m3") == "P0203");
+  CHECK(codes("mass 0kg") == "P0304");
+  CHECK(codes("mass 20kg/m3") == "P0302");
+  CHECK(codes("mass 2000kg") == "P0303");
+  CHECK(codes("mass 0.2kg com (0cm, 0cm, 1cm)") == "P0101");
+  CHECK(codes("mass 0.2kg com (0cm, 0cm, 1cm) inertia (1kgm2, 1kgm2, 3kgm2)") == "P0304");
+  CHECK(codes("mass 0.2kg com (0cm, 0cm, 1cm) inertia (1kgm2, 1kgm2, 0kgm2)") == "P0304");
+  CHECK(codes("mass 0.2kg com (0cm, 0cm, 1cm) inertia (1kgm2, 1kgm2, 1kgm2, 0kgm2)") == "P0304");
+}
+
 TEST_CASE("object_st: paint by name or by number, and the colour that is said agrees") {
   const auto a = clean(
       "object o like red { paint (0, 0.2, 1); color blue; name \"o\" }\n"

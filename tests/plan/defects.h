@@ -148,7 +148,7 @@ inline std::vector<Defect> catalogue_defects() {
       {"OBJT", "positive extent", [](Records& r, Writer&) { r.objects[0].box_max[1] = -1; }},
       {"OBJT", "a density", [](Records& r, Writer&) { r.objects[0].density = 0; }},
       {"OBJT", "a friction", [](Records& r, Writer&) { r.objects[0].friction = std::nan(""); }},
-      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero2[1] = 1; }},
+      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero2[0] = 1; }},
       {"ASST", "leads out", [](Records& r, Writer& w) { r.assets[0].path = w.text("../secret"); }},
       {"ASST", "leads out",
        [](Records& r, Writer& w) { r.assets[0].path = w.text("/etc/passwd"); }},
@@ -371,6 +371,24 @@ inline std::vector<Defect> task_defects() {
          r.programs[1].metrics.count = 1;
        }},
       {"OBJT", "scaled by", [](Records& r, Writer&) { r.objects[0].scale = 1000; }},
+      {"OBJT", "a density or a mass",
+       [](Records& r, Writer&) {
+         r.masses.push_back({0.2, {}, {}}), r.objects[0].mass = {0, 1};
+       }},
+      {"MASS", "has an inertia",
+       [](Records& r, Writer&) {
+         r.masses.push_back({0.2, {0, 0, 0.1}, {}}), r.objects[0].mass = {0, 1};
+         r.objects[0].density = 0;
+       }},
+      {"MASS", "exceeds the sum",
+       [](Records& r, Writer&) {
+         r.masses.push_back({0.2, {}, {1, 1, 3, 0, 0, 0}}), r.objects[0].mass = {0, 1};
+         r.objects[0].density = 0;
+       }},
+      {"MASS", "belongs to nobody",
+       [](Records& r, Writer&) {
+         r.masses.push_back({0.2, {}, {}});
+       }},
       {"OBJT", "is painted",
        [](Records& r, Writer&) {
          r.objects[0].paint = {9, 0, 0, 0};

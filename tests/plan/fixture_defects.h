@@ -15,6 +15,12 @@ inline std::vector<Defect> fixture_defects() {
        [](Records& r, Writer&) { r.fixture_joints[0].start = 0.5; }},
       {"FJNT", "finite and not negative",
        [](Records& r, Writer&) { r.fixture_joints[0].damping = -1; }},
+      {"FIXT", "an armature for each of its 2 joints",
+       [](Records& r, Writer& w) { r.fixtures[0].armatures = w.reals(std::vector<double>{0.1}); }},
+      {"REAL", "an armature",
+       [](Records& r, Writer& w) {
+         r.fixtures[0].armatures = w.reals(std::vector<double>{0.1, -1});
+       }},
       {"FIXT", "its joints begin at record 0",
        [](Records& r, Writer&) {
          r.fixtures[0].joints = {1, 1};

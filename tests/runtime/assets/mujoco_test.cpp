@@ -170,7 +170,7 @@ TEST_CASE("a box that stands twice weighs twice in an object, and is felt once i
         place + "1 geom stands where another of the same size does: felt once");
 }
 
-TEST_CASE("what is not spread evenly is told, with how far off it is") {
+TEST_CASE("what is not spread evenly has its mass, its centre and its moments") {
   const MjcfFolder folder;
   std::string text = kCup;
   const std::string upper = "pos=\"0 0 0.02\" density=\"100\"";
@@ -179,8 +179,10 @@ TEST_CASE("what is not spread evenly is told, with how far off it is") {
   const MujocoAsset cup = converted(cup_options(folder));
   CHECK(cup.mass == doctest::Approx(0.0576));
   CHECK(cup.center_of_mass.z() == doctest::Approx(0.01));
-  REQUIRE(cup.notes.size() == 1);
-  CHECK(cup.notes[0].find("its mass is spread evenly over what is felt: centre 10 mm, inertia") !=
+  CHECK(cup.notes.empty());
+  // Two boxes of 14.4 and 43.2 g, 2 cm below and above the middle.
+  CHECK(cup.declaration.find("  mass 0.0576kg com (0cm, 0cm, 1cm) inertia (4.224e-05kgm2, "
+                             "4.224e-05kgm2, 3.456e-05kgm2); friction 0.95; name \"cup\"\n") !=
         std::string::npos);
 }
 
@@ -239,7 +241,7 @@ TEST_CASE("a fixture is a URDF with a link a joint, its joints, parts and region
         "fixture cupboard {\n"
         "  urdf \"fixtures/mine/cupboard/cupboard.urdf\"; at (0cm, 0cm, 0cm)\n"
         "  friction 1\n"
-        "  joint drawer friction 2N damping 50Ns/m\n"
+        "  joint drawer friction 2N damping 50Ns/m armature 0.1kg\n"
         "  joint turn stiffness 2Nm/rad at 10deg\n"
         "  part drawer_part link drawer_part name \"drawer\"\n"
         "  part knob link knob name \"knob\"\n"
@@ -253,8 +255,7 @@ TEST_CASE("a fixture is a URDF with a link a joint, its joints, parts and region
   CHECK(notes ==
         "cupboard.xml:11: 1 cylinder is felt as polyhedra whose corners lie on them\n"
         "cupboard.xml:18: 1 capsule is felt as polyhedra whose corners lie on them\n"
-        "cupboard.xml: friction differs by geom (0.5 of 1, 1 of 4), 1 is taken for all\n"
-        "cupboard.xml:10: an armature of 0.1 is not kept: joints of fixtures have none\n");
+        "cupboard.xml: friction differs by geom (0.5 of 1, 1 of 4), 1 is taken for all\n");
   for (const MujocoFile& file : made.files) folder.write("assets/" + file.path, file.bytes);
   const auto urdf = robot::load_urdf(folder.path("assets/fixtures/mine/cupboard/cupboard.urdf"));
   INFO((urdf ? std::string() : to_text(urdf.failure())));

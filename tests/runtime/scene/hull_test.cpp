@@ -121,6 +121,27 @@ TEST_CASE("a mesh that is no solid is refused with its name") {
   CHECK(!make_collision_shape({std::vector<Vec3>(9, Vec3(1, 2, 3))}, "point.obj").ok());
 }
 
+TEST_CASE("a shape about another centre of mass is the same solid, with the inertia that is given") {
+  const CollisionShape box = make_box_shape(Vec3(0.1, 0.2, 0.3));
+  Mat3 inertia;
+  inertia << 3e-3, 1e-4, 0, 1e-4, 2.5e-3, 0, 0, 0, 1.5e-3;
+  const Vec3 center(0.01, -0.02, 0.05);
+  const CollisionShape shape = shape_weighing(box, 0.4, center, inertia);
+  CHECK(shape.center_of_mass == center);
+  CHECK(shape.volume == box.volume);
+  const double density = 0.4 / shape.volume;
+  CHECK((density * shape.unit_inertia - inertia).norm() < 1e-15);
+  REQUIRE(shape.parts.size() == 1);
+  for (std::size_t i = 0; i < 8; ++i) {
+    const Vec3 there = shape.parts[0].vertices[i] + shape.center_of_mass;
+    CHECK((there - box.parts[0].vertices[i]).norm() < 1e-15);
+  }
+  for (const ConvexPart::Face& face : shape.parts[0].faces)
+    CHECK(std::abs(face.normal.dot(shape.parts[0].vertices[face.loop[0]]) - face.offset) < 1e-15);
+  CHECK(shape.bounding_radius ==
+        doctest::Approx((Vec3(-0.1, 0.2, -0.3) - center).norm()).epsilon(1e-12));
+}
+
 TEST_CASE("a mesh file that is missing or broken is refused with file and line") {
   const auto load = [](const std::string& text) {
     const std::string path = write_file("vlaprobe_broken.obj", text);

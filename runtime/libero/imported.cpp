@@ -1,0 +1,37 @@
+#include "runtime/libero/imported.h"
+
+#include <filesystem>
+
+#include "runtime/compile/files.h"
+
+namespace probe::libero {
+
+Result<const plan::Plan*> Imported::plan(std::string_view suite) {
+  if (const auto known = plans_.find(suite); known != plans_.end()) return known->second.get();
+  const std::string text = folder_ + "/" + std::string(suite) + ".probe";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(text, error))
+    return Failure{Fault::kUsage, "the import has no such suite", text};
+  compile::FilesRequest request;
+  request.assets = folder_;
+  PROBE_ASSIGN(Compilation made, compile::compile_files({text}, request));
+  if (!made.ok)
+    return Failure{Fault::kUsage, "the suite does not compile, `vlaprobe check` says why", text};
+  PROBE_ASSIGN(plan::Plan opened, plan::Plan::from_bytes(std::move(made.plan)));
+  return plans_.emplace(suite, std::make_unique<plan::Plan>(std::move(opened)))
+      .first->second.get();
+}
+
+Result<std::unique_ptr<stage::Stage>> Imported::stage(std::string_view suite, std::string_view task,
+                                                      bool pictures) {
+  PROBE_ASSIGN(const plan::Plan* of, plan(suite));
+  const auto index = of->find_task(task);
+  if (!index)
+    return Failure{Fault::kUsage, "the suite has no task `" + std::string(task) + "`",
+                   folder_ + "/" + std::string(suite) + ".probe"};
+  const std::uint32_t tasks[] = {*index};
+  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(*of, folder_, tasks));
+  return stage::Stage::create(*of, *index, assets, {{}, pictures});
+}
+
+}  // namespace probe::libero

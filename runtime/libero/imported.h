@@ -1,0 +1,33 @@
+// A folder that `libero import` made, for those who measure it: its suites as plans, its tasks as
+// stages.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "runtime/base/result.h"
+#include "runtime/plan/plan.h"
+#include "runtime/stage/stage.h"
+
+namespace probe::libero {
+
+class Imported {
+ public:
+  explicit Imported(std::string folder) : folder_(std::move(folder)) {}
+
+  const std::string& folder() const { return folder_; }
+  // Compiled once; lives as long as this. Fails (kUsage, where = the text) where the folder lacks
+  // it or it does not check.
+  Result<const plan::Plan*> plan(std::string_view suite);
+  // Of a task by its name in the text.
+  Result<std::unique_ptr<stage::Stage>> stage(std::string_view suite, std::string_view task,
+                                              bool pictures);
+
+ private:
+  std::string folder_;
+  std::map<std::string, std::unique_ptr<plan::Plan>, std::less<>> plans_;
+};
+
+}  // namespace probe::libero

@@ -1,0 +1,133 @@
+#include "runtime/libero/records.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+
+#include "runtime/base/file.h"
+#include "runtime/libero/zip.h"
+#include "runtime/wire/npy.h"
+
+namespace probe::libero {
+
+std::string RecordedTask::key() const { return fmt::format("{}_{:02}", suite, index); }
+
+std::string RecordedTask::name() const {
+  std::string name = stem;
+  for (char& c : name) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return name;
+}
+
+Result<Records> Records::open(const std::string& folder) {
+  Records records;
+  records.folder_ = folder;
+  PROBE_ASSIGN(const std::string text, records.text("libero_tasks.json"));
+  const Json all = Json::parse(text);
+  for (const Json& said : all["tasks"]) {
+    RecordedTask& task = records.tasks_.emplace_back();
+    task.suite = said["suite"].text();
+    task.stem = said["file"].text();
+    if (task.stem.ends_with(".bddl")) task.stem.resize(task.stem.size() - 5);
+    task.index = said["index"].get<std::size_t>();
+    task.said = said;
+  }
+  return records;
+}
+
+bool Records::has(const std::string& file) const {
+  std::error_code error;
+  return std::filesystem::is_regular_file(std::filesystem::path(folder_) / file, error);
+}
+
+Result<std::string> Records::text(const std::string& file) const {
+  return read_file((std::filesystem::path(folder_) / file).string(),
+                   {.most = std::size_t{1} << 28, .code = Fault::kUsage, .only_begin = false});
+}
+
+Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) const {
+  std::vector<RecordedState> states;
+  PROBE_ASSIGN(const std::string bytes, text("libero_settled.npz"));
+  const std::span<const std::uint8_t> archive(reinterpret_cast<const std::uint8_t*>(bytes.data()),
+                                              bytes.size());
+  const auto member =
+      read_zip_member(archive, task.key() + ".npy", std::size_t{1} << 24, "libero_settled.npz");
+  if (!member) return states;  // of some tasks alone
+  PROBE_ASSIGN(const wire::Array rows,
+               wire::from_npy(wire::Bytes(member->begin(), member->end())));
+  if (rows.shape.size() != 2)
+    return Failure{Fault::kUsage, "expected a row a start", "libero_settled.npz: " + task.key()};
+  const auto count = static_cast<std::size_t>(rows.shape[0]);
+  const auto width = static_cast<std::size_t>(rows.shape[1]);
+  const std::size_t objects = task.said["objects"].size();
+  if (rows.bytes.size() != count * width * sizeof(double) || width < 10 + 7 * objects)
+    return Failure{Fault::kUsage, "its rows are no states of this task",
+                   "libero_settled.npz: " + task.key()};
+  std::vector<double> values(count * width);
+  std::memcpy(values.data(), rows.bytes.data(), rows.bytes.size());
+  std::size_t joints = 0;
+  for (const auto& [name, fixture] : task.said["fixtures"].items())
+    joints += fixture["joints"].size();
+  for (std::size_t r = 0; r < count; ++r) {
+    const double* q = &values[r * width] + 1;
+    RecordedState& state = states.emplace_back();
+    state.arm.assign(q, q + 7);
+    state.fingers.assign(q + 7, q + 9);
+    q += 9;
+    for (std::size_t i = 0; i < objects; ++i, q += 7)
+      state.objects.push_back(
+          {Vec3(q[0], q[1], q[2]), Quat(q[3], q[4], q[5], q[6]).normalized()});
+    state.fixture_joints.assign(q, q + joints);
+  }
+  return states;
+}
+
+Result<std::size_t> RecordedTable::column(const std::string& name) const {
+  const auto at = std::ranges::find(names, name);
+  if (at == names.end())
+    return Failure{Fault::kUsage, "the table has no column `" + name + "`", ""};
+  return static_cast<std::size_t>(at - names.begin());
+}
+
+Result<RecordedTable> read_table(const std::string& text, const std::string& where) {
+  RecordedTable table;
+  std::string_view rest = text;
+  std::size_t number = 0;
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty()) continue;
+    std::vector<std::string_view> cells;
+    for (std::string_view left = line;; left.remove_prefix(left.find(',') + 1)) {
+      cells.push_back(left.substr(0, left.find(',')));
+      if (left.find(',') == left.npos) break;
+    }
+    if (number == 1) {
+      table.names.assign(cells.begin(), cells.end());
+      continue;
+    }
+    const std::string place = fmt::format("{}:{}", where, number);
+    if (cells.size() != table.names.size())
+      return Failure{
+          Fault::kUsage,
+          fmt::format("expected {} cells, found {}", table.names.size(), cells.size()), place};
+    std::vector<double>& row = table.rows.emplace_back();
+    for (const std::string_view cell : cells) {
+      double value = 0;
+      const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+      if (error != std::errc() || at != cell.data() + cell.size())
+        return Failure{Fault::kUsage, fmt::format("expected a number, found `{}`", cell), place};
+      row.push_back(value);
+    }
+  }
+  return table;
+}
+
+}  // namespace probe::libero

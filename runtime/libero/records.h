@@ -1,0 +1,58 @@
+// What was recorded of the benchmark's own program, as files: its tasks, the states behind the ten
+// steps of waiting, steps of the arm. A folder of records has what it has; rows of `fidelity` that
+// lack theirs are not measured.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/base/geometry.h"
+#include "runtime/base/json.h"
+#include "runtime/base/result.h"
+
+namespace probe::libero {
+
+struct RecordedTask {
+  std::string suite, stem;  // "libero_goal", "open_the_middle_drawer_of_the_cabinet"
+  std::size_t index = 0;    // within its suite
+  std::string key() const;  // "libero_goal_00"
+  std::string name() const; // of the task in the imported text
+  Json said;                // its entry
+};
+
+// A state of MuJoCo's as LIBERO stores it, in its own order.
+struct RecordedState {
+  std::vector<double> arm;            // rad, seven
+  std::vector<double> fingers;        // m, two; the second counts downwards
+  std::vector<Pose> objects;          // in the order of the task's objects
+  std::vector<double> fixture_joints;  // m, rad
+};
+
+class Records {
+ public:
+  // Fails (kUsage) where the folder has no libero_tasks.json.
+  static Result<Records> open(const std::string& folder);
+
+  const std::string& folder() const { return folder_; }
+  const std::vector<RecordedTask>& tasks() const { return tasks_; }
+  bool has(const std::string& file) const;
+  Result<std::string> text(const std::string& file) const;
+
+  // libero_settled.npz: by start; empty where the archive has none of this task.
+  Result<std::vector<RecordedState>> settled(const RecordedTask& task) const;
+
+ private:
+  std::string folder_;
+  std::vector<RecordedTask> tasks_;
+};
+
+// A table with a header, every cell a number.
+struct RecordedTable {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> rows;
+  // Of a row that the table has, by name; fails (kUsage) where there is no such column.
+  Result<std::size_t> column(const std::string& name) const;
+};
+Result<RecordedTable> read_table(const std::string& text, const std::string& where);
+
+}  // namespace probe::libero
