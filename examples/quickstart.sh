@@ -1,14 +1,23 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to a judged, recorded, pictured evaluation: installs, builds, runs the suite with the scripted
-# expert, and says where everything is. Run it again and it continues where it stopped.
+# expert, and says where everything is. Run it again and it continues where it stopped. In an unpacked bundle, or where
+# .ci/bundle made one of this commit, nothing is installed or built.
 #   examples/quickstart.sh [OUTPUT_DIR]      default: runs/quickstart in this checkout
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 out=${1:-$root/runs/quickstart}
-"$root/.ci/install"
-"$root/.ci/build" vlaprobe
-
-vlaprobe=$root/build/vlaprobe
+vlaprobe=$root/bin/vlaprobe
+if [ ! -x "$vlaprobe" ]; then
+  commit=$(git -C "$root" rev-parse HEAD 2>/dev/null || true)
+  made=$([ -z "$commit" ] || grep -lxF "$commit" "$root"/build/bundle/*/COMMIT 2>/dev/null | head -n 1)
+  if [ -n "$made" ]; then
+    vlaprobe=$(dirname "$made")/bin/vlaprobe
+  else
+    "$root/.ci/install"
+    "$root/.ci/build" vlaprobe
+    vlaprobe=$root/build/vlaprobe
+  fi
+fi
 "$vlaprobe" check "$root/suite/intact.probe"
 "$vlaprobe" run "$root/suite/intact.probe" --tasks carrot_on_plate --policy expert --jobs "$(nproc)" --video all -o "$out"
 "$vlaprobe" sheet "$out" -o "$out/contact_sheet.png"

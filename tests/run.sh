@@ -62,6 +62,16 @@ if [ "$seconds" -gt 0 ]; then
   passed=$((passed + ${t:-0} - ${f:-0})) failed=$((failed + ${f:-1}))
 fi
 
+# The folder that runs elsewhere: made, installed, held against the build.
+log=$root/build/bundle.log
+with_progress "testing, the bundle" progress_unknown "$log" "$root/tests/bundle.sh" || true
+p=$(sed -n 's/^\([0-9]*\) passed, [0-9]* failed$/\1/p' "$log")
+f=$(sed -n 's/^[0-9]* passed, \([0-9]*\) failed$/\1/p' "$log")
+[ -n "$p" ] && [ -n "$f" ] || f=1
+passed=$((passed + ${p:-0})) failed=$((failed + f))
+printf '%-28s %4d passed %4d failed\n' bundle "${p:-0}" "$f"
+if [ "$f" -ne 0 ]; then cat "$log"; fi
+
 [ $((passed + failed)) -gt 0 ] || { echo "no test ran" >&2; failed=1; }
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -21,13 +21,10 @@ Result<std::string> find_asset_root(std::string_view chosen) {
     return only(named, "VLAPROBE_ASSETS");
   }
   std::string looked;
-  const std::string beside = folder_of_code().string();
-  for (const std::string& place : {beside.empty() ? beside : beside + "/../assets",
-                                   std::string(VLAPROBE_BUILT_FROM) + "/assets"}) {
-    if (place.empty()) continue;
+  for (const fs::path& place : own_places("assets")) {
     // A build folder has an `assets` too, without a manifest.
-    if (fs::exists(place + "/manifest.json")) return fs::path(place).lexically_normal().string();
-    looked += (looked.empty() ? "" : ", ") + place;
+    if (fs::exists(place / "manifest.json")) return place.string();
+    looked += (looked.empty() ? "" : ", ") + place.string();
   }
   return Failure{
       Fault::kAsset,

@@ -11,7 +11,10 @@ namespace fs = std::filesystem;
 
 fs::path folder_of_program() {
   std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path file = fs::read_symlink("/proc/self/exe", error);
+  // A bundle's launcher starts its program as an argument of the loader that lies in the bundle.
+  if (file.filename().string().starts_with("ld-linux")) return file.parent_path().parent_path() / "bin";
+  return file.parent_path();
 }
 
 fs::path folder_of_code() {
@@ -25,6 +28,15 @@ fs::path folder_of_code() {
   std::error_code error;
   const fs::path file = fs::canonical(object->l_name, error);
   return error ? fs::path() : file.parent_path();
+}
+
+std::vector<fs::path> own_places(std::string_view what) {
+  std::vector<fs::path> places;
+  if (const fs::path beside = folder_of_code(); !beside.empty())
+    places.push_back((beside / ".." / what).lexically_normal());
+  constexpr std::string_view kBuiltFrom = VLAPROBE_BUILT_FROM;
+  if (!kBuiltFrom.empty()) places.push_back(fs::path(kBuiltFrom) / what);
+  return places;
 }
 
 }  // namespace probe

@@ -38,8 +38,7 @@ Result<std::vector<std::string>> find_library_folders(std::string_view chosen) {
   if (const char* named = std::getenv("VLAPROBE_STD"); named != nullptr && *named != '\0') {
     return only(named, "VLAPROBE_STD");
   }
-  for (const fs::path& place :
-       {folder_of_code() / "../dsl", fs::path(VLAPROBE_BUILT_FROM) / "dsl"}) {
+  for (const fs::path& place : own_places("dsl")) {
     if (holds_library(place)) return with_suite(place);
   }
   return std::vector<std::string>();

@@ -6,6 +6,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
+#include "runtime/base/own_folder.h"
 #include "runtime/scene/image.h"
 
 namespace probe::doctor {
@@ -103,23 +104,29 @@ bool compare(const GoldenFrame& golden, const GoldenFrame& here, GoldenCheck& ch
 }  // namespace
 
 std::string golden_folder() {
-  const std::string folder = std::string(VLAPROBE_BUILT_FROM) + "/tests/golden_frames";
-  return fs::is_directory(folder) ? folder : std::string();
+  for (const fs::path& folder : own_places("tests/golden_frames")) {
+    if (fs::is_directory(folder)) return folder.string();
+  }
+  return {};
 }
 
 bool shown_in_golden(const std::string& asset_root) {
   const auto here = read_file((fs::path(asset_root) / "manifest.json").string());
-  const auto own = read_file(std::string(VLAPROBE_BUILT_FROM) + "/assets/manifest.json");
-  return here && own && *here == *own;
+  return here && std::ranges::any_of(own_places("assets"), [&](const fs::path& place) {
+           const auto own = read_file((place / "manifest.json").string());
+           return own && *here == *own;
+         });
 }
 
 std::vector<std::string> golden_suites() {
-  std::vector<std::string> texts;
-  for (const char* name : {"panda", "intact"}) {
-    texts.push_back(std::string(VLAPROBE_BUILT_FROM) + "/suite/" + name + ".probe");
-    if (!fs::is_regular_file(texts.back())) return {};
+  for (const fs::path& suite : own_places("suite")) {
+    std::vector<std::string> texts;
+    for (const char* name : {"panda.probe", "intact.probe"}) {
+      if (fs::is_regular_file(suite / name)) texts.push_back((suite / name).string());
+    }
+    if (texts.size() == 2) return texts;
   }
-  return texts;
+  return {};
 }
 
 const char* to_text(GoldenState state) {

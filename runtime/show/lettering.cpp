@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <optional>
 
+#include "runtime/base/own_folder.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/utf8.h"
 #include FT_FREETYPE_H
@@ -142,6 +144,12 @@ std::vector<FontFile> installed_fonts() {
   std::vector<FontFile> files;
   if (const char* named = std::getenv("VLAPROBE_FONT"); named != nullptr && *named != '\0') {
     files.push_back({.path = named, .face = 0, .asked_for = true});
+  }
+  // A bundle brings the letters that it was tested with; where the system has no fonts, it has nothing to say either.
+  for (const std::filesystem::path& own : own_places("fonts/DejaVuSans.ttf")) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(own, error)) files.push_back({.path = own.string(), .face = 0});
+    if (!files.empty() && !std::filesystem::exists("/etc/fonts/fonts.conf", error)) return files;
   }
   const Pattern wanted(FcNameParse(reinterpret_cast<const FcChar8*>("DejaVu Sans")));
   if (!wanted) return files;

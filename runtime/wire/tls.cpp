@@ -2,7 +2,9 @@
 
 #include <openssl/x509v3.h>
 
+#include <array>
 #include <boost/asio/ssl.hpp>
+#include <cstdlib>
 #include <filesystem>
 
 #include "runtime/base/printable.h"
@@ -22,6 +24,25 @@ std::string time_text(const ASN1_TIME* time) {
   if (time == nullptr || ASN1_TIME_to_tm(time, &parts) != 1) return "an unknown time";
   char text[32];
   return std::string(text, std::strftime(text, sizeof text, "%Y-%m-%d %H:%M UTC", &parts));
+}
+
+// Where systems other than the one that OpenSSL was built for keep the authorities that they trust: Debian's and SUSE's
+// own, Red Hat's, Alpine's. A variable that names them elsewhere is heeded alone.
+constexpr std::array kSystemAuthorities = {"/etc/ssl/certs/ca-certificates.crt", "/etc/pki/tls/certs/ca-bundle.crt",
+                                           "/etc/ssl/ca-bundle.pem", "/etc/ssl/cert.pem"};
+
+void add_system_authorities(ssl::context& context) {
+  std::error_code none;
+  if (std::getenv(X509_get_default_cert_file_env()) != nullptr ||
+      std::getenv(X509_get_default_cert_dir_env()) != nullptr ||
+      std::filesystem::is_directory(X509_get_default_cert_dir(), none))
+    return;
+  for (const char* file : kSystemAuthorities) {
+    boost::system::error_code unread;
+    if (!std::filesystem::is_regular_file(file, none)) continue;
+    context.load_verify_file(file, unread);
+    if (!unread) return;
+  }
 }
 
 // The hosts that a certificate is for: "a.example, 10.0.0.1".
@@ -69,6 +90,7 @@ struct TlsStream::Parts {
     context.set_verify_mode(ssl::verify_peer);
     if (asked.tls.authorities.empty()) {
       context.set_default_verify_paths();  // and SSL_CERT_FILE, SSL_CERT_DIR
+      add_system_authorities(context);
     } else {
       context.load_verify_file(asked.tls.authorities);
     }

@@ -27,6 +27,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_assets(program, exit);
   add_libero(program, exit);
   add_doctor(program, exit);
+  add_demo(program, exit);
 }
 
 }  // namespace probe::cli
