@@ -18,20 +18,30 @@ Result<const plan::Plan*> Imported::plan(std::string_view suite) {
   if (!made.ok)
     return Failure{Fault::kUsage, "the suite does not compile, `vlaprobe check` says why", text};
   PROBE_ASSIGN(plan::Plan opened, plan::Plan::from_bytes(std::move(made.plan)));
-  return plans_.emplace(suite, std::make_unique<plan::Plan>(std::move(opened)))
-      .first->second.get();
+  return plans_.emplace(suite, std::make_unique<plan::Plan>(std::move(opened))).first->second.get();
+}
+
+Result<std::uint32_t> Imported::find(const plan::Plan& plan, std::string_view suite,
+                                     std::string_view task) const {
+  if (const auto index = plan.find_task(task)) return *index;
+  return Failure{Fault::kUsage, "the suite has no task `" + std::string(task) + "`",
+                 folder_ + "/" + std::string(suite) + ".probe"};
+}
+
+Result<std::shared_ptr<const stage::SharedAssets>> Imported::assets(std::string_view suite,
+                                                                    std::string_view task) {
+  PROBE_ASSIGN(const plan::Plan* of, plan(suite));
+  PROBE_ASSIGN(const std::uint32_t index, find(*of, suite, task));
+  const std::uint32_t tasks[] = {index};
+  return stage::SharedAssets::load(*of, folder_, tasks);
 }
 
 Result<std::unique_ptr<stage::Stage>> Imported::stage(std::string_view suite, std::string_view task,
                                                       bool pictures) {
   PROBE_ASSIGN(const plan::Plan* of, plan(suite));
-  const auto index = of->find_task(task);
-  if (!index)
-    return Failure{Fault::kUsage, "the suite has no task `" + std::string(task) + "`",
-                   folder_ + "/" + std::string(suite) + ".probe"};
-  const std::uint32_t tasks[] = {*index};
-  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(*of, folder_, tasks));
-  return stage::Stage::create(*of, *index, assets, {{}, pictures});
+  PROBE_ASSIGN(const std::uint32_t index, find(*of, suite, task));
+  PROBE_ASSIGN(const auto loaded, assets(suite, task));
+  return stage::Stage::create(*of, index, loaded, {{}, pictures});
 }
 
 }  // namespace probe::libero

@@ -22,10 +22,15 @@ class Imported {
   // it or it does not check.
   Result<const plan::Plan*> plan(std::string_view suite);
   // Of a task by its name in the text.
+  Result<std::shared_ptr<const stage::SharedAssets>> assets(std::string_view suite,
+                                                            std::string_view task);
   Result<std::unique_ptr<stage::Stage>> stage(std::string_view suite, std::string_view task,
                                               bool pictures);
 
  private:
+  Result<std::uint32_t> find(const plan::Plan& plan, std::string_view suite,
+                             std::string_view task) const;
+
   std::string folder_;
   std::map<std::string, std::unique_ptr<plan::Plan>, std::less<>> plans_;
 };

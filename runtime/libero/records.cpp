@@ -57,8 +57,7 @@ Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) co
   const auto member =
       read_zip_member(archive, task.key() + ".npy", std::size_t{1} << 24, "libero_settled.npz");
   if (!member) return states;  // of some tasks alone
-  PROBE_ASSIGN(const wire::Array rows,
-               wire::from_npy(wire::Bytes(member->begin(), member->end())));
+  PROBE_ASSIGN(const wire::Array rows, wire::from_npy(wire::Bytes(member->begin(), member->end())));
   if (rows.shape.size() != 2)
     return Failure{Fault::kUsage, "expected a row a start", "libero_settled.npz: " + task.key()};
   const auto count = static_cast<std::size_t>(rows.shape[0]);
@@ -79,8 +78,7 @@ Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) co
     state.fingers.assign(q + 7, q + 9);
     q += 9;
     for (std::size_t i = 0; i < objects; ++i, q += 7)
-      state.objects.push_back(
-          {Vec3(q[0], q[1], q[2]), Quat(q[3], q[4], q[5], q[6]).normalized()});
+      state.objects.push_back({Vec3(q[0], q[1], q[2]), Quat(q[3], q[4], q[5], q[6]).normalized()});
     state.fixture_joints.assign(q, q + joints);
   }
   return states;
@@ -115,9 +113,9 @@ Result<RecordedTable> read_table(const std::string& text, const std::string& whe
     }
     const std::string place = fmt::format("{}:{}", where, number);
     if (cells.size() != table.names.size())
-      return Failure{
-          Fault::kUsage,
-          fmt::format("expected {} cells, found {}", table.names.size(), cells.size()), place};
+      return Failure{Fault::kUsage,
+                     fmt::format("expected {} cells, found {}", table.names.size(), cells.size()),
+                     place};
     std::vector<double>& row = table.rows.emplace_back();
     for (const std::string_view cell : cells) {
       double value = 0;

@@ -13,18 +13,18 @@
 namespace probe::libero {
 
 struct RecordedTask {
-  std::string suite, stem;  // "libero_goal", "open_the_middle_drawer_of_the_cabinet"
-  std::size_t index = 0;    // within its suite
-  std::string key() const;  // "libero_goal_00"
-  std::string name() const; // of the task in the imported text
-  Json said;                // its entry
+  std::string suite, stem;   // "libero_goal", "open_the_middle_drawer_of_the_cabinet"
+  std::size_t index = 0;     // within its suite
+  std::string key() const;   // "libero_goal_00"
+  std::string name() const;  // of the task in the imported text
+  Json said;                 // its entry
 };
 
 // A state of MuJoCo's as LIBERO stores it, in its own order.
 struct RecordedState {
-  std::vector<double> arm;            // rad, seven
-  std::vector<double> fingers;        // m, two; the second counts downwards
-  std::vector<Pose> objects;          // in the order of the task's objects
+  std::vector<double> arm;             // rad, seven
+  std::vector<double> fingers;         // m, two; the second counts downwards
+  std::vector<Pose> objects;           // in the order of the task's objects
   std::vector<double> fixture_joints;  // m, rad
 };
 

@@ -2,6 +2,7 @@
 #include "runtime/base/asset_root.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/libero/fidelity.h"
 #include "runtime/libero/import.h"
 
 namespace probe::cli {
@@ -25,6 +26,23 @@ int import_libero(libero::ImportOptions& options) {
   return kFine;
 }
 
+int tell_fidelity(const libero::FidelityOptions& options, bool lists_all) {
+  const auto rows = libero::measure_fidelity(options);
+  if (!rows) return report(rows.failure());
+  bool is_held = true;
+  for (const libero::FidelityRow& row : *rows) {
+    put("{:<38} {:<13} bar {}\n", row.what, libero::to_text(row.held), row.bar);
+    if (!row.figure.empty()) put("  {}\n", row.figure);
+    put("  {}\n", row.how);
+    constexpr std::size_t kFew = 5;
+    const std::size_t shown = lists_all ? row.others.size() : std::min(kFew, row.others.size());
+    for (std::size_t i = 0; i < shown; ++i) put("    {}\n", row.others[i]);
+    if (shown < row.others.size()) put("    and {} more: `--all`\n", row.others.size() - shown);
+    is_held = is_held && row.held != libero::Held::kNo;
+  }
+  return is_held ? kFine : kOutside;
+}
+
 }  // namespace
 
 void add_libero(Verb app, int& exit) {
@@ -46,6 +64,23 @@ void add_libero(Verb app, int& exit) {
   import.refuse_empty_values();
   import.callback([options, &exit] { exit = import_libero(*options);
 });
+
+auto measured = std::make_shared<libero::FidelityOptions>();
+auto lists_all = std::make_shared<bool>(false);
+Verb fidelity = verb.add_subcommand(
+    "fidelity", "how an import compares with the original, row by row: bar, figure, how measured");
+fidelity.footer(
+    "what has no files to be measured against says so; exit 2 where a bar is missed\n"
+    "example: vlaprobe libero fidelity libero --libero LIBERO --records recorded");
+fidelity.add_option("DIR", measured->import, "folder that `libero import` made").required();
+fidelity.add_option("--libero", measured->original,
+                    "LIBERO's repository, or libero/libero in it: problems and stored starts");
+fidelity.add_option("--records", measured->records,
+                    "what was recorded of LIBERO's own program: libero_tasks.json and others");
+fidelity.add_option("--starts", measured->starts, "of a task that come to rest (default: 50)");
+fidelity.add_flag("--all", *lists_all, "all that is beyond a bar, not the first few");
+fidelity.refuse_empty_values();
+fidelity.callback([measured, lists_all, &exit] { exit = tell_fidelity(*measured, *lists_all); });
 }  // namespace probe::cli
 
 }  // namespace probe::cli

@@ -21,65 +21,16 @@
 #include "tests/hex.h"
 #include "tests/runtime/libero/reference.h"
 #include "tests/runtime/libero/small.h"
+#include "tests/runtime/libero/small_folder.h"
 
 namespace probe::libero {
 namespace {
 
 namespace fs = std::filesystem;
 
-const char* const kTask = "KITCHEN_SCENE1_put_a_cup_in_the_drawer_and_close_it";
-
-struct LiberoFolder {
-  fs::path root = fs::temp_directory_path() / ("vlaprobe_libero_" + std::to_string(getpid()));
-  LiberoFolder() {
-    fs::remove_all(root);
-    write("bddl_files/libero_90/" + std::string(kTask) + ".bddl", test::kSmallProblem);
-    const auto states = test::from_hex(test::kSmallStates);
-    write("init_files/libero_90/" + std::string(kTask) + ".pruned_init",
-          {reinterpret_cast<const char*>(states.data()), states.size()});
-    write("assets/stable_scanned_objects/cup/cup.xml", model("cup", box("0.03 0.03 0.04")));
-    write("assets/turbosquid_objects/lid/lid.xml", model("lid", box("0.04 0.04 0.01")));
-    write(
-        "assets/articulated_objects/chest.xml",
-        model(
-            "chest",
-            box("0.1 0.1 0.01") +
-                R"(<body name="drawer"><joint name="drawer_slide" type="slide" axis="0 1 0" range="-0.16 0.01" damping="50"/>
-                       <geom type="box" size="0.08 0.08 0.005" pos="0 0 0.06" group="0" density="100"/>
-                       <site name="drawer" type="box" pos="0 0 0.1" size="0.07 0.06 0.03" quat="0.7071068 0 0.7071068 0"/></body>)"));
-    write(
-        "robosuite/base.xml",
-        R"(<mujoco model="base"><compiler angle="radian" inertiagrouprange="0 0"/><worldbody/></mujoco>)");
-  }
-  ~LiberoFolder() { fs::remove_all(root); }
-
-  static std::string box(const std::string& size) {
-    return "<geom type=\"box\" size=\"" + size +
-           "\" pos=\"0 0 0.04\" group=\"0\" density=\"100\" friction=\"0.95 0.3 0.1\"/>"
-           "<geom type=\"box\" size=\"" +
-           size +
-           "\" pos=\"0 0 0.04\" group=\"1\" contype=\"0\" conaffinity=\"0\" rgba=\"0.5 0.2 0.1 "
-           "1\"/>";
-  }
-  static std::string model(const std::string& name, const std::string& inside) {
-    return "<mujoco model=\"" + name + "\"><worldbody><body><body name=\"object\">" + inside +
-           "</body><site name=\"bottom_site\" pos=\"0 0 -0.06\" size=\"0.005\" rgba=\"0 0 0 0\"/>"
-           "</body></worldbody></mujoco>";
-  }
-  void write(const std::string& path, std::string_view bytes) const {
-    fs::create_directories((root / path).parent_path());
-    std::ofstream(root / path, std::ios::binary) << bytes;
-  }
-  Result<ImportReport> import(const std::string& to = "out") const {
-    fs::remove_all(root / to);
-    ImportOptions options;
-    options.from = root.string();
-    options.robosuite = (root / "robosuite").string();
-    options.to = (root / to).string();
-    options.own = VLAPROBE_SOURCE_DIR "/assets";
-    return import_libero(options);
-  }
-};
+const char* const kTask = test::kSmallTask;
+using LiberoFolder = test::SmallFolder;
+using test::text_of;
 
 // One grey pixel, PNG.
 constexpr const char* kPixel =
@@ -109,11 +60,6 @@ void write_kitchen(const LiberoFolder& folder) {
   for (const char* name : {"gray_ceramic_tile", "yellow_linen_wall_texture"})
     folder.write(std::string("assets/textures/") + name + ".png",
                  {reinterpret_cast<const char*>(pixel.data()), pixel.size()});
-}
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::map<std::string, std::string> files_in(const fs::path& folder) {

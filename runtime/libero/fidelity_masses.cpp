@@ -1,0 +1,109 @@
+// Masses, centres and inertias of the physics against what MuJoCo's compiler made of the models.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "runtime/libero/fidelity.h"
+
+namespace probe::libero {
+namespace {
+
+Mat3 inertia_of(const Json& body) {
+  const auto q = body["iquat"].get<std::vector<double>>();
+  const auto moments = body["inertia"].get<std::vector<double>>();
+  const Mat3 turn = Quat(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+  return turn * Vec3(moments.data()).asDiagonal() * turn.transpose();
+}
+
+// Of a body in the one that carries it, as the model writes it: it is not turned there.
+Vec3 place_of(const Json& body) {
+  Vec3 place = Vec3::Zero();
+  if (body["pos"].is_string()) {
+    std::istringstream numbers(body["pos"].text());
+    numbers >> place[0] >> place[1] >> place[2];
+  }
+  return place;
+}
+
+}  // namespace
+
+Result<FidelityRow> masses_row(Imported& imported, const Records& records) {
+  constexpr double kBar = 1e-6;
+  FidelityRow row{"masses, centres, inertias",
+                  "1e-6, relative; 1e-6 m",
+                  "",
+                  "what the physics weighs against the models as MuJoCo compiled them",
+                  Held::kNo,
+                  {}};
+  PROBE_ASSIGN(const std::string text, records.text("libero_object_classes.json"));
+  const Json classes = Json::parse(text);
+  double mass = 0, centre = 0, inertia = 0;
+  std::set<std::string> seen;
+  for (const RecordedTask& task : records.tasks()) {
+    bool has_new = false;
+    for (const auto& [name, said] : task.said["objects"].items())
+      has_new = has_new || !seen.contains(said["cls"].text());
+    for (const auto& [name, said] : task.said["fixtures"].items())
+      has_new = has_new || !seen.contains(said["cls"].text());
+    if (!has_new) continue;
+    PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite));
+    PROBE_ASSIGN(const auto assets, imported.assets(task.suite, task.name()));
+    const plan::TaskRecord& record = plan->tasks()[*plan->find_task(task.name())];
+    const auto compare = [&](const std::string& cls, double got, const Vec3& at, const Mat3& about,
+                             const Json& wanted) {
+      const double kg = wanted["mass"].get<double>();
+      const Mat3 moments = inertia_of(wanted);
+      const auto place = wanted["ipos"].get<std::vector<double>>();
+      const double m = std::abs(got - kg) / kg, c = (at - Vec3(place.data())).norm(),
+                   i = (about - moments).norm() / moments.norm();
+      mass = std::max(mass, m), centre = std::max(centre, c), inertia = std::max(inertia, i);
+      if (std::max({m, c, i}) > kBar)
+        row.others.push_back(
+            fmt::format("{}: mass {:.1g}, centre {:.1g} m, inertia {:.1g}", cls, m, c, i));
+    };
+    for (const plan::BodyRecord& body : plan->bodies(record)) {
+      if (body.kind != static_cast<std::uint32_t>(plan::BodyKind::kObject)) continue;
+      const Json* said = task.said["objects"].find(std::string(plan->text(body.name)));
+      if (said == nullptr || !seen.insert((*said)["cls"].text()).second) continue;
+      const plan::ObjectRecord& object = plan->objects()[body.index];
+      const auto shape = assets->object_shape(body.index);
+      const plan::MassRecord* own = plan->mass(object);
+      const double density = own == nullptr ? object.density : own->mass / shape->volume;
+      // A body within the thing's own may carry all of it.
+      const std::string cls = (*said)["cls"].text();
+      const Json& compiled = classes[cls]["compiled_bodies"];
+      for (std::size_t b = 0; b < compiled.size(); ++b) {
+        if (compiled[b]["mass"].get<double>() == 0) continue;
+        const Vec3 within = b == 0 ? Vec3(Vec3::Zero()) : place_of(classes[cls]["bodies"][b]);
+        compare(cls, density * shape->volume, shape->center_of_mass - within,
+                density * shape->unit_inertia, compiled[b]);
+      }
+    }
+    // Of a fixture what moves: what stands weighs nothing to the physics.
+    std::size_t at = 0;
+    const auto loaded = assets->fixtures(record.scene);
+    for (const auto& [name, said] : task.said["fixtures"].items()) {
+      if (at >= loaded.size()) break;
+      const stage::LoadedFixture& fixture = *loaded[at++];
+      const std::string cls = said["cls"].text();
+      if (!seen.insert(cls).second) continue;
+      for (const robot::Link& link : fixture.parts.model.links) {
+        if (link.parent_joint < 0) continue;
+        for (const Json& wanted : classes[cls]["compiled_bodies"]) {
+          if (!wanted["name"].text().ends_with("_" + link.name) ||
+              wanted["mass"].get<double>() == 0)
+            continue;
+          compare(cls + "." + link.name, link.mass, link.center_of_mass, link.inertia, wanted);
+        }
+      }
+    }
+  }
+  row.figure = fmt::format("{} kinds of things: mass {:.1g}, inertia {:.1g}, centre {:.1g} m",
+                           seen.size(), mass, inertia, centre);
+  row.held = !seen.empty() && row.others.empty() ? Held::kYes : Held::kNo;
+  return row;
+}
+
+}  // namespace probe::libero
