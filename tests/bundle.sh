@@ -48,6 +48,31 @@ check "demo writes its report" "$work/linked" demo -o "$work/demo"
 check "every library has its licence" bash -c 'cd "$1" && ls lib | while read -r file; do grep -q "^lib/$file " LICENSES/packages.txt || exit 1; done' - "$bundle"
 check "no file names where it was built" bash -c '! grep -rlF "$1" "$2"' - "$here" "$bundle"
 
+# The image holds nothing but the folder: no shell, no system.
+images() { (cd "$made" && VLAPROBE_DEB_LEVEL=0 "$here/.ci/package" deb oci && sha256sum ./*.deb ./*.oci.tar); }
+check "packages are made" images
+cp "$work/log" "$work/first"
+check "packages are made again" images
+cp "$work/log" "$work/second"
+check "and have the same bytes" cmp "$work/first" "$work/second"
+unpack() { # the image's layers into $work/image
+  python3 - "$made/$name.oci.tar" "$work/image" <<'END'
+import io, json, sys, tarfile
+image = tarfile.open(sys.argv[1])
+def blob(digest):
+    return image.extractfile("blobs/" + digest.replace(":", "/")).read()
+manifest = json.loads(blob(json.load(image.extractfile("index.json"))["manifests"][0]["digest"]))
+for layer in manifest["layers"]:
+    tarfile.open(fileobj=io.BytesIO(blob(layer["digest"]))).extractall(sys.argv[2])
+END
+}
+check "the image is unpacked" unpack
+if [ "$(id -u)" -eq 0 ]; then
+  mkdir -p "$work/image/proc"
+  check "its program runs with nothing beside it" unshare --mount --pid --fork bash -c 'mount -t proc proc "$0/proc" &&
+    exec chroot --userspec=1000:1000 "$0" /opt/vlaprobe/bin/vlaprobe demo -o /tmp/demo' "$work/image"
+fi
+
 for root in "$@"; do
   rm -rf "$root/home/guest" && mkdir -p "$root/home/guest"
   cp "$made/$name.tar.zst" "$made/install.sh" "$root/home/guest/"
@@ -57,6 +82,11 @@ for root in "$@"; do
     exec chroot --userspec=1000:1000 "$0" env -i HOME=/home/guest PATH=/usr/bin:/bin "$@"' "$root")
   system=$(. "$root/etc/os-release"; echo "$PRETTY_NAME")
   called=/home/guest/.local/share/$name/bin/vlaprobe
+  cp "$made"/vlaprobe_*.deb "$root/tmp/vlaprobe.deb"
+  check "$system: the package is installed" chroot "$root" dpkg -i /tmp/vlaprobe.deb
+  check "$system: the package's program runs" "${inside[@]}" vlaprobe check /usr/lib/vlaprobe/suite/intact.probe
+  check "$system: the package is removed" chroot "$root" dpkg -P vlaprobe
+  check "$system: and nothing of it is left" test ! -e "$root/usr/lib/vlaprobe"
   check "$system: install.sh" "${inside[@]}" bash /home/guest/install.sh
   check "$system: demo" "${inside[@]}" "$called" demo -o /home/guest/demo
   check "$system: quickstart without a build" "${inside[@]}" bash "/home/guest/.local/share/$name/examples/quickstart.sh" /home/guest/quickstart
