@@ -1,15 +1,46 @@
 #include "runtime/assets/output_folder.h"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
+#include <vector>
 
 #include "runtime/base/sha256.h"
 
 namespace probe::assets {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kTemporary = ".tmp";  // and the process that writes it
+
+// What processes left that were ended before they were done. A number that is another process's
+// by now keeps its folder.
+void remove_left_over(const fs::path& named) {
+  const std::string stem = named.filename().string() + std::string(kTemporary);
+  std::error_code error;
+  std::vector<fs::path> left;
+  for (fs::directory_iterator at(named.parent_path(), error), end; !error && at != end;
+       at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with(stem) || !at->is_directory()) continue;
+    const std::string_view digits = std::string_view(name).substr(stem.size());
+    ::pid_t process = 0;
+    const auto [stop, wrong] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), process);
+    if (wrong != std::errc() || stop != digits.data() + digits.size() || process <= 0) continue;
+    if (::kill(process, 0) != 0 && errno == ESRCH) left.push_back(at->path());
+  }
+  for (const fs::path& path : left) fs::remove_all(path, error);
+}
+
+}  // namespace
 
 Result<OutputFolder> OutputFolder::create(const std::string& path) {
   std::error_code error;
@@ -20,7 +51,9 @@ Result<OutputFolder> OutputFolder::create(const std::string& path) {
   }
   // A name with a slash at its end has no last part.
   const fs::path named = target.has_filename() ? target : target.parent_path();
-  const std::string temporary = named.string() + ".tmp" + std::to_string(::getpid());
+  remove_left_over(named);
+  const std::string temporary =
+      named.string() + std::string(kTemporary) + std::to_string(::getpid());
   fs::create_directories(temporary, error);
   if (error) return Failure{Fault::kIo, "cannot make the folder: " + error.message(), temporary};
   return OutputFolder(named.string(), temporary);
@@ -65,8 +98,13 @@ Status OutputFolder::finish(bool with_manifest) {
   std::error_code error;
   fs::remove(target_, error);  // an empty folder of that name
   fs::rename(temporary_, target_, error);
-  if (error)
-    return Failure{Fault::kIo, "cannot rename the finished folder: " + error.message(), target_};
+  if (error) {
+    const bool is_taken = fs::exists(target_, error);
+    return Failure{Fault::kIo,
+                   is_taken ? "another process made this folder meanwhile"
+                            : "cannot give the finished folder its name",
+                   target_};
+  }
   temporary_.clear();
   return {};
 }

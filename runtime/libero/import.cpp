@@ -37,6 +37,15 @@ bool is_file(const Path& path) {
   return fs::is_regular_file(path, error);
 }
 
+// Whether a path, which may not be there yet, lies in a folder; links are followed.
+bool is_below(const Path& path, const Path& folder) {
+  std::error_code error;
+  const Path inner = fs::weakly_canonical(fs::absolute(path, error), error);
+  const Path outer = fs::weakly_canonical(fs::absolute(folder, error), error);
+  const auto [end, rest] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+  return end == outer.end();
+}
+
 // The first of some places that a lab's folder may have it at.
 std::optional<Path> find_below(const std::string& from, std::initializer_list<const char*> places,
                                const char* wanted) {
@@ -109,6 +118,11 @@ class LiberoImport {
                      near};
     }
     base_ = (*robosuite / "base.xml").string();
+    for (const Path& read : {root_ / "bddl_files", root_ / "init_files", assets_, *robosuite}) {
+      if (!is_below(options_.to, read)) continue;
+      return Failure{Fault::kUsage, "lies in `" + read.string() + "`, which is only read",
+                     options_.to};
+    }
     if (!options_.poses.empty()) PROBE_TRY(read_poses());
     for (const Suite& suite : suites()) PROBE_TRY(read_suite(suite));
     PROBE_TRY(convert_things());
@@ -118,8 +132,7 @@ class LiberoImport {
     for (auto& [suite, tasks] : tasks_) PROBE_TRY(write_one(*suite, tasks));
     PROBE_TRY(write_asked());
     if (report_.tasks == 0) {
-      return Failure{Fault::kUsage, "no task can be read: " + report_.lines.front().text,
-                     options_.from};
+      return Failure{Fault::kUsage, "no task can be read: " + cause(), options_.from};
     }
     for (const std::string& odd : odd_) say("odd", odd);
     for (const std::string& broken : broken_) say("broken", broken);
@@ -137,6 +150,14 @@ class LiberoImport {
  private:
   void say(std::string word, std::string text) {
     report_.lines.push_back({std::move(word), std::move(text)});
+  }
+  // Why there is no task: a model that is lacking, a task that is left out, or what comes first.
+  std::string cause() const {
+    if (!lacking_.empty()) return lacking_.begin()->first + ": " + lacking_.begin()->second;
+    for (const ImportLine& line : report_.lines) {
+      if (line.text.find(" is left out: ") != line.text.npos) return line.text;
+    }
+    return report_.lines.front().text;
   }
   // Paths as they are below the folder that was given.
   std::string shorter(std::string text) const {

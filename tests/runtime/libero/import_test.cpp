@@ -3,6 +3,9 @@
 #include "runtime/libero/import.h"
 
 #include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -208,6 +211,153 @@ TEST_CASE("a folder that is none is refused with what is not there") {
   CHECK(folder.import().failure().message == "there is no `assets` beside `bddl_files`");
   fs::remove_all(folder.root / "bddl_files");
   CHECK(folder.import().failure().message == "no LIBERO folder: there is no `bddl_files`");
+}
+
+TEST_CASE("a folder that is only read is not written into, and nothing stays of what was refused") {
+  const LiberoFolder folder;
+  ImportOptions options;
+  options.from = folder.root.string();
+  options.robosuite = (folder.root / "robosuite").string();
+  options.own = VLAPROBE_SOURCE_DIR "/assets";
+  for (const char* inside : {"bddl_files/out", "init_files/libero_90/out", "assets/out",
+                             "robosuite/out", "bddl_files/../assets/out"}) {
+    CAPTURE(inside);
+    options.to = (folder.root / inside).string();
+    const auto before = files_in(folder.root);
+    const auto refused = import_libero(options);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.failure().message.find("which is only read") != std::string::npos);
+    CHECK(files_in(folder.root) == before);
+  }
+}
+
+TEST_CASE("what an import left that was killed is removed by the next one, another's is not") {
+  const LiberoFolder folder;
+  const pid_t dead = fork();
+  if (dead == 0) _exit(0);
+  REQUIRE(waitpid(dead, nullptr, 0) == dead);
+  const std::string left = "out.tmp" + std::to_string(dead) + "/things.probe";
+  const std::string living = "out.tmp" + std::to_string(getppid()) + "/things.probe";
+  folder.write(left, "half");
+  folder.write(living, "half");
+  folder.write("out.tmpl/mine", "kept");
+  REQUIRE(folder.import().ok());
+  CHECK_FALSE(fs::exists((folder.root / left).parent_path()));
+  CHECK(fs::exists(folder.root / living));
+  CHECK(fs::exists(folder.root / "out.tmpl/mine"));
+}
+
+TEST_CASE("two imports into one folder: one of them is whole, the other is told") {
+  const LiberoFolder folder;
+  ImportOptions options;
+  options.from = folder.root.string();
+  options.robosuite = (folder.root / "robosuite").string();
+  options.own = VLAPROBE_SOURCE_DIR "/assets";
+  options.to = (folder.root / "both").string();
+  const pid_t other = fork();
+  if (other == 0) {
+    const auto made = import_libero(options);
+    _exit(made.ok() ? 0 : made.failure().code == Fault::kIo ? 1 : 2);
+  }
+  const auto here = import_libero(options);
+  int status = 0;
+  REQUIRE(waitpid(other, &status, 0) == other);
+  REQUIRE(WIFEXITED(status));
+  const int there = WEXITSTATUS(status);
+  // One after the other, or at once: never both, never half a folder.
+  CHECK(there <= 1);
+  CHECK((here.ok() ? 1 : 0) + (there == 0 ? 1 : 0) == 1);
+  if (!here.ok()) CHECK(here.failure().code == Fault::kIo);
+  REQUIRE(folder.import("alone").ok());
+  CHECK(files_in(folder.root / "both") == files_in(folder.root / "alone"));
+  for (const auto& entry : fs::directory_iterator(folder.root))
+    CHECK(entry.path().filename().string().find(".tmp") == std::string::npos);
+}
+
+TEST_CASE(
+    "where fixtures stand can be said in a table, and what is wrong in it is told by its line") {
+  const LiberoFolder folder;
+  ImportOptions options;
+  options.from = folder.root.string();
+  options.robosuite = (folder.root / "robosuite").string();
+  options.own = VLAPROBE_SOURCE_DIR "/assets";
+  options.to = (folder.root / "posed").string();
+  options.poses = (folder.root / "poses.csv").string();
+  const std::string header = "suite,task,fixture,x_m,y_m,z_m,qw,qx,qy,qz\n";
+  const std::string place = "libero_90," + std::string(kTask) + ",chest_1,";
+  folder.write("poses.csv", header + place + "0.215,-0.285,0.92,0,0,0,1\n");
+  const auto report = import_libero(options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(text_of(folder.root / "posed/libero_90.probe")
+            .find("fixture chest_1 like chest { at (21.5cm, -28.5cm, 92cm) yaw 180deg }") !=
+        std::string::npos);
+  CHECK(said_by(*report, "odd").find("where fixtures stand") == std::string::npos);
+  const auto refused = [&](const std::string& text) {
+    folder.write("poses.csv", text);
+    fs::remove_all(folder.root / "posed");
+    const auto made = import_libero(options);
+    return made.ok() ? std::string() : to_text(made.failure());
+  };
+  CHECK(refused("suite,task\n").find("poses.csv:1: expected the header") != std::string::npos);
+  CHECK(refused(header + place + "1,2\n").find("poses.csv:2: expected 10 cells, found 5") !=
+        std::string::npos);
+  CHECK(refused(header + place + "1,2,x,1,0,0,0\n")
+            .find("poses.csv:2: expected a number, found "
+                  "`x`") != std::string::npos);
+  CHECK(refused(header + place + "1,2,3,1,1,0,0\n").find("poses.csv:2: a quaternion") !=
+        std::string::npos);
+  CHECK(refused(header + place + "0.2,-0.3,0.92,0.8,0.6,0,0\n").find("is tilted") !=
+        std::string::npos);
+}
+
+TEST_CASE("a disk that is full is told with the file, and nothing stays") {
+  const LiberoFolder folder;
+  const pid_t child = fork();
+  if (child == 0) {
+    // No file may be larger than this: writing fails as on a full disk.
+    const rlimit small{4096, 4096};
+    signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &small);
+    const auto made = folder.import("full");
+    const bool is_told = !made.ok() && made.failure().code == Fault::kIo &&
+                         made.failure().message == "cannot write the file" &&
+                         made.failure().where.find("full.tmp") != std::string::npos;
+    _exit(is_told ? 0 : 1);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(WIFEXITED(status));
+  CHECK(WEXITSTATUS(status) == 0);
+  for (const auto& entry : fs::directory_iterator(folder.root))
+    CHECK(entry.path().filename().string().find("full") == std::string::npos);
+}
+
+TEST_CASE("damaged meshes leave their things out, by name") {
+  const LiberoFolder folder;
+  const std::string model =
+      "<mujoco model=\"cup\"><asset><mesh name=\"m\" file=\"cup.msh\"/></asset><worldbody><body>"
+      "<body name=\"object\"><geom type=\"mesh\" mesh=\"m\" group=\"1\" contype=\"0\" "
+      "conaffinity=\"0\"/><geom type=\"box\" size=\"0.03 0.03 0.04\" group=\"0\" "
+      "density=\"100\"/></body><site name=\"bottom_site\" pos=\"0 0 -0.06\" size=\"0.005\"/>"
+      "</body></worldbody></mujoco>";
+  folder.write("assets/stable_scanned_objects/cup/cup.xml", model);
+  const auto said = [&](std::string_view bytes) {
+    folder.write("assets/stable_scanned_objects/cup/cup.msh", bytes);
+    const auto made = folder.import();
+    REQUIRE_FALSE(made.ok());
+    return made.failure().message;
+  };
+  using namespace std::string_view_literals;
+  for (const std::string_view bytes : {""sv, "\3\0\0"sv, "\3\0\0\0\0\0\0\0\0\0\0\0\1\0\0\0"sv,
+                                       "\xff\xff\xff\x7f\0\0\0\0\0\0\0\0\xff\xff\xff\x7f"sv,
+                                       "\xff\xff\xff\xff\0\0\0\0\0\0\0\0\1\0\0\0"sv}) {
+    CAPTURE(bytes.size());
+    const std::string message = said(bytes);
+    CAPTURE(message);
+    CHECK(message.find("no task can be read: cup: ") == 0);
+    CHECK(message.find("cup.msh") != std::string::npos);
+  }
+  CHECK_FALSE(fs::exists(folder.root / "out"));
 }
 
 TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a check") {
