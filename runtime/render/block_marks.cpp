@@ -4,6 +4,7 @@
 #include <array>
 
 #include "runtime/render/clones.h"
+#include "runtime/render/extremes.h"
 
 namespace probe::render {
 namespace {
@@ -15,8 +16,6 @@ struct PixelLimits {
   float nearest, max_x, max_y;
 };
 
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float greatest(float a, float b) { return a > b ? a : b; }
 
 // Of the blocks that meet a rectangle of pixels, with room; y1 is less than y0 if none does.
 inline BlockRectangle blocks_of(float min_x, float max_x, float min_y, float max_y,

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runtime/render/clones.h"
+#include "runtime/render/extremes.h"
 
 namespace probe::render {
 namespace {
@@ -15,7 +16,6 @@ constexpr float kRoom = 1.0f;                // pixels
 constexpr float kDoubt = 1e-5f;
 constexpr float kMostGrazing = 0.7f;  // least by greatest 1 / depth of a triangle in its block
 constexpr float kBehindBlock = 0.999f;
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 struct Range {
   float low, high;
@@ -28,7 +28,6 @@ inline Range range(float a, float b, float c, float x0, float x1, float y0, floa
           c + (ax0 < ax1 ? ax1 : ax0) + (by0 < by1 ? by1 : by0)};
 }
 
-inline int is(bool truth) { return truth ? 1 : 0; }
 
 // `columns`: a, b, c of the first edge, of the second, of the third; then bounds x0, x1, y0, y1
 // and how wrong an edge may be.

@@ -33,7 +33,7 @@ constexpr bool lanes_are_tile_offsets() {
 }
 static_assert(lanes_are_tile_offsets(), "a packet's samples are the first eight of a tile's order");
 
-inline float least(const Eight& of) {
+inline float least_of(const Eight& of) {
   const auto less = [](float a, float b) { return a < b ? a : b; };
   return less(less(less(of[0], of[1]), less(of[2], of[3])),
               less(less(of[4], of[5]), less(of[6], of[7])));
@@ -117,7 +117,7 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
         second = second > beaten ? second : beaten;
         front = ahead ? w : front;
         name = ahead ? number : name;
-        behind = kHiddenBehind * least(front);
+        behind = kHiddenBehind * least_of(front);
         std::memcpy(closest + at, &front, sizeof front);
         std::memcpy(other + at, &second, sizeof second);
         std::memcpy(owner + at, &name, sizeof name);

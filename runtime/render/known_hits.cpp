@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "runtime/render/clones.h"
+#include "runtime/render/extremes.h"
 
 namespace probe::render {
 namespace {
 
-constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 constexpr float kEmbreeDoubt = static_cast<float>(kPlaceDoubt);
 // Eight roundings of 6e-8 in the projection, twice.
@@ -25,11 +25,6 @@ constexpr std::size_t kTrianglesForPacket = 5;
 
 enum Kind : std::int32_t { kUnseen, kDrawn, kDoubtful };
 
-inline float least(float a, float b) { return a < b ? a : b; }
-inline float greatest(float a, float b) { return a > b ? a : b; }
-inline float least(float a, float b, float c) { return least(least(a, b), c); }
-inline float greatest(float a, float b, float c) { return greatest(greatest(a, b), c); }
-inline std::int32_t is(bool truth) { return truth ? 1 : 0; }
 
 // The packets that hold samples from `low` to `high` pixels, of a side that ends at `last`.
 struct Span {

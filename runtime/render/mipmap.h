@@ -2,7 +2,10 @@
 // reads them. Bytes stay as the file has them: the vertex law knows no linear light.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "runtime/scene/mesh.h"
@@ -19,6 +22,9 @@ class MipChain {
   int height() const { return levels_[0].height; }
   // Repeats on both axes, row 0 at v = 0. `texels`: how many of level 0 a step of a pixel crosses.
   Rgb at(float u, float v, float texels) const;
+  // The same of many places: red, green and blue.
+  void read(std::span<const float> u, std::span<const float> v, std::span<const float> texels,
+            const std::array<float*, 3>& color) const;
 
  private:
   struct Level {
@@ -26,6 +32,8 @@ class MipChain {
     const std::uint8_t* rgba = nullptr;
     std::vector<std::uint8_t> own;
   };
+  void read_block(const float* u, const float* v, const float* texels, std::size_t count,
+                  const std::array<float*, 3>& color) const;
   std::vector<Level> levels_;
 };
 

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/render/clones.h"
+#include "runtime/render/extremes.h"
 #include "runtime/render/placing_check.h"
+#include "runtime/render/seen_triangles.h"
 
 namespace probe::render {
 namespace {
 
 constexpr float kMostSubpixels = 134217728.0f;  // 2^27
-constexpr float kBehind = -1;                   // the nearness of what has to be cut
+static_assert(MeshClusters::kMostTriangles <= SmallTriangles::kMost);
+constexpr float kBehind = -1;  // the nearness of what has to be cut
 
 inline std::int32_t subpixel(float pixels) {
   const float at = pixels * static_cast<float>(kSubpixels);
@@ -26,11 +30,24 @@ struct CornerView {
   float fx, fy, cx, cy;
 };
 
-PROBE_CLONES void view_corners(const float* __restrict x, const float* __restrict y,
-                               const float* __restrict z, std::size_t count, const CornerView& by,
-                               std::int32_t* __restrict across, std::int32_t* __restrict down,
-                               float* __restrict nearness) {
+// Places of a cluster as they are drawn, and the box around them.
+struct SeenPlaces {
+  static constexpr std::size_t kMost = MeshClusters::kMostPlaces;
+  std::array<std::int32_t, kMost> x, y;
+  std::array<float, kMost> nearness;
+  std::int32_t left = 0, right = 0, top = 0, bottom = 0;
+  bool is_cut = false;  // some lie before the nearest depth
+};
+
+PROBE_CLONES void view_places(const float* __restrict x, const float* __restrict y,
+                              const float* __restrict z, std::size_t count, const CornerView& by,
+                              SeenPlaces& __restrict out) {
   const CornerView p = by;
+  std::int32_t* __restrict across = out.x.data();
+  std::int32_t* __restrict down = out.y.data();
+  float* __restrict nearness = out.nearness.data();
+  std::int32_t x0 = std::numeric_limits<std::int32_t>::max(), x1 = -x0, y0 = x0, y1 = -x0;
+  std::int32_t behind = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const float right = p.turn[0] * x[i] + p.turn[1] * y[i] + p.turn[2] * z[i] + p.shift[0];
     const float low = p.turn[3] * x[i] + p.turn[4] * y[i] + p.turn[5] * z[i] + p.shift[1];
@@ -40,7 +57,17 @@ PROBE_CLONES void view_corners(const float* __restrict x, const float* __restric
     across[i] = subpixel(p.cx + p.fx * right * near);
     down[i] = subpixel(p.cy + p.fy * low * near);
     nearness[i] = deep < PlacedMeshes::kNearestDepth ? kBehind : near;
+    x0 = least(x0, across[i]);
+    x1 = greatest(x1, across[i]);
+    y0 = least(y0, down[i]);
+    y1 = greatest(y1, down[i]);
+    behind |= deep < PlacedMeshes::kNearestDepth ? 1 : 0;
   }
+  out.left = x0;
+  out.right = x1;
+  out.top = y0;
+  out.bottom = y1;
+  out.is_cut = behind != 0;
 }
 
 }  // namespace
@@ -67,12 +94,12 @@ Status PlacedMeshes::add(const std::vector<Visual>& visuals,
     instance.name = visual.name;
     instance.first_part = parts_.size();
     for (const VertexMesh::Part& part : instance.mesh->parts) {
-      parts_.push_back({instances_.size(), &part, lit_.size()});
-      lit_.resize(lit_.size() + part.x.size());
+      parts_.push_back({instances_.size(), &part, corners_, end_id_});
+      corners_ += part.x.size();
+      end_id_ += static_cast<std::uint32_t>(part.indices.size() / 3);
     }
     instances_.push_back(std::move(instance));
   }
-  lit_stamp_.resize(lit_.size(), 0);
   return {};
 }
 
@@ -89,6 +116,14 @@ void PlacedMeshes::look_from(const Camera& camera) {
   fy_ = static_cast<float>(camera.fy);
   cx_ = static_cast<float>(camera.cx);
   cy_ = static_cast<float>(camera.cy);
+  const auto middles = [](int count, float center, float focal, std::vector<float>& out) {
+    out.clear();
+    for (int i = 0; i < count; ++i) out.push_back((static_cast<float>(i) + 0.5f - center) / focal);
+  };
+  middles(width_, cx_, fx_, across_);
+  middles(height_, cy_, fy_, down_);
+  step_across_ = 1 / fx_;
+  step_down_ = 1 / fy_;
   shift_ = -(to_eye_ * eye_);
   left_ = top_ = 0;
   right_ = static_cast<float>(width_);
@@ -106,11 +141,11 @@ std::optional<PlacedMeshes::Mirror> PlacedMeshes::mirror() const {
     const Vec3 normal(part.normals[0], part.normals[1], part.normals[2]);
     mirror.normal = instance.place.rotation * normal;
     mirror.height = mirror.normal.dot(instance.place.apply(Vec3(part.x[0], part.y[0], part.z[0])));
-    if (mirror.normal.dot(eye_) <= mirror.height || is_outside(instance, part)) continue;
+    if (mirror.normal.dot(eye_) <= mirror.height || is_outside(instance, part.around)) continue;
     mirror.left = width_;
     mirror.top = height_;
     for (std::size_t i = 0; i < part.x.size(); ++i) {
-      const Float3 seen = to_camera(instance, {part.x[i], part.y[i], part.z[i]});
+      const Float3 seen = instance.to_camera({part.x[i], part.y[i], part.z[i]});
       if (seen.z() < kNearestDepth) {
         mirror.left = mirror.top = 0;
         mirror.right = width_ - 1;
@@ -118,7 +153,7 @@ std::optional<PlacedMeshes::Mirror> PlacedMeshes::mirror() const {
         break;
       }
       const DrawnCorner at = corner_at(seen);
-      const auto pixel = [](std::int64_t subpixels) { return static_cast<int>(subpixels >> 8); };
+      const auto pixel = [](std::int32_t subpixels) { return subpixels >> 8; };
       mirror.left = std::min(mirror.left, pixel(at.x) - 1);
       mirror.right = std::max(mirror.right, pixel(at.x) + 1);
       mirror.top = std::min(mirror.top, pixel(at.y) - 1);
@@ -167,22 +202,21 @@ void PlacedMeshes::place(std::size_t index, const Pose& pose, const LampTable& l
   }
   lamps.put(there, eye_, forward_, instance.lamps);
   instance.lamps.share = into_ ? into_->share : 1;
-  instance.stamp = ++stamps_;
 }
 
-Float3 PlacedMeshes::to_camera(const Instance& instance, const Float3& p) const {
-  const auto& m = instance.turn;
-  return {m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + instance.shift[0],
-          m[3] * p.x() + m[4] * p.y() + m[5] * p.z() + instance.shift[1],
-          m[6] * p.x() + m[7] * p.y() + m[8] * p.z() + instance.shift[2]};
+Float3 PlacedMeshes::Instance::to_camera(const Float3& p) const {
+  const auto& m = turn;
+  return {m[0] * p.x() + m[1] * p.y() + m[2] * p.z() + shift[0],
+          m[3] * p.x() + m[4] * p.y() + m[5] * p.z() + shift[1],
+          m[6] * p.x() + m[7] * p.y() + m[8] * p.z() + shift[2]};
 }
 
-// The ball around a part lies beside the picture or behind the eye.
-bool PlacedMeshes::is_outside(const Instance& instance, const VertexMesh::Part& part) const {
-  const Float3 c = to_camera(instance, part.middle);
-  const float reach = part.radius * 1.001f;
+// The ball lies beside the picture or behind the eye, with room for rounding.
+bool PlacedMeshes::is_outside(const Instance& instance, const Ball& ball) const {
+  const Float3 c = instance.to_camera(ball.middle);
+  const float reach = ball.radius * 1.001f + 1e-5f;
   if (c.z() + reach < kNearestDepth) return true;
-  if (into_ && instance.up.dot(part.middle) + reach < instance.level) return true;
+  if (into_ && instance.up.dot(ball.middle) + reach < instance.level) return true;
   // Past a side of the picture: `room` pixels from the middle, with a pixel to spare.
   const auto past = [&](float along, float focal, float room) {
     return along * focal - (room + 1) * c.z() > reach * std::hypot(focal, room + 1);
@@ -197,7 +231,7 @@ DrawnCorner PlacedMeshes::corner_at(const Float3& seen) const {
 }
 
 // What of a triangle lies beyond the nearest depth, and before the mirror that is looked into.
-bool PlacedMeshes::draw_cut(const Instance& instance, const VertexMesh::Part& part,
+void PlacedMeshes::draw_cut(const Instance& instance, const VertexMesh::Part& part,
                             std::size_t first, SampleBuffer& out, std::uint32_t id) const {
   std::array<Float3, 5> left;
   std::size_t count = 3;
@@ -220,111 +254,76 @@ bool PlacedMeshes::draw_cut(const Instance& instance, const VertexMesh::Part& pa
     count = n;
   };
   if (into_) cut([&](const Float3& p) { return instance.up.dot(p) - instance.level; });
-  for (std::size_t k = 0; k < count; ++k) left[k] = to_camera(instance, left[k]);
+  for (std::size_t k = 0; k < count; ++k) left[k] = instance.to_camera(left[k]);
   cut([](const Float3& p) { return p.z() - kNearestDepth; });
   std::array<DrawnCorner, 5> corners;
   for (std::size_t k = 0; k < count; ++k) {
     left[k].z() = std::max(left[k].z(), kNearestDepth);
     corners[k] = corner_at(left[k]);
   }
-  bool any_drawn = false;
   for (std::size_t k = 2; k < count; ++k) {
     const std::size_t b = into_ ? k : k - 1, c = into_ ? k - 1 : k;
-    any_drawn |= out.draw(corners[0], corners[b], corners[c], id);
+    out.draw(corners[0], corners[b], corners[c], id);
   }
-  return any_drawn;
 }
 
-void PlacedMeshes::draw(std::size_t index, SampleBuffer& out, std::vector<DrawnTriangle>& drawn,
-                        RowSpans* spans) {
+void PlacedMeshes::draw(std::size_t index, SampleBuffer& out, RowSpans* spans) {
   const Instance& instance = instances_[index];
   for (std::size_t p = 0; p < instance.mesh->parts.size(); ++p) {
-    const VertexMesh::Part& part = instance.mesh->parts[p];
-    if (part.indices.empty() || is_outside(instance, part)) continue;
-    const std::size_t corners = part.x.size();
-    x_.resize(std::max(x_.size(), corners));
-    y_.resize(x_.size());
-    nearness_.resize(x_.size());
-    view_corners(part.x.data(), part.y.data(), part.z.data(), corners,
-                 {instance.turn, instance.shift, fx_, fy_, cx_, cy_}, x_.data(), y_.data(),
-                 nearness_.data());
-    const auto end = static_cast<std::ptrdiff_t>(corners);
-    const bool is_cut = *std::min_element(nearness_.begin(), nearness_.begin() + end) < 0;
-    if (spans != nullptr) {
-      int left = 0, right = width_ - 1, top = 0, bottom = height_ - 1;
-      if (!is_cut) {
-        const auto [x0, x1] = std::minmax_element(x_.begin(), x_.begin() + end);
-        const auto [y0, y1] = std::minmax_element(y_.begin(), y_.begin() + end);
-        left = std::max(left, *x0 / kSubpixels - 1);
-        right = std::min(right, *x1 / kSubpixels + 1);
-        top = std::max(top, *y0 / kSubpixels - 1);
-        bottom = std::min(bottom, *y1 / kSubpixels + 1);
-      }
-      if (left > right || top > bottom) continue;
-      spans->add(top, bottom, left, right);
-    }
-    const auto placed = static_cast<std::uint32_t>(instance.first_part + p);
-    for (std::size_t first = 0; first + 2 < part.indices.size(); first += 3) {
-      const std::uint32_t a = part.indices[first], b = part.indices[first + 1],
-                          c = part.indices[first + 2];
-      const auto id = static_cast<std::uint32_t>(drawn.size() + 1);
-      const bool cut =
-          into_ || (is_cut && (nearness_[a] < 0 || nearness_[b] < 0 || nearness_[c] < 0));
-      const bool is_seen =
-          cut ? draw_cut(instance, part, first, out, id)
-              : out.draw({x_[a], y_[a], nearness_[a]}, {x_[b], y_[b], nearness_[b]},
-                         {x_[c], y_[c], nearness_[c]}, id);
-      if (is_seen) drawn.push_back({placed, static_cast<std::uint32_t>(first / 3)});
+    const PlacedPart& placed = parts_[instance.first_part + p];
+    if (placed.part->indices.empty() || is_outside(instance, placed.part->around)) continue;
+    const auto& clusters = placed.part->clusters.clusters;
+    for (const MeshClusters::Cluster& cluster : clusters) {
+      if (clusters.size() > 1 && is_outside(instance, cluster.around)) continue;
+      draw_cluster(instance, placed, cluster, out, spans);
     }
   }
 }
 
-const Rgb& PlacedMeshes::lit(const PlacedPart& placed, std::uint32_t corner) {
-  const std::size_t at = placed.first_corner + corner;
-  const Instance& instance = instances_[placed.instance];
-  if (lit_stamp_[at] == instance.stamp) return lit_[at];
-  lit_stamp_[at] = instance.stamp;
-  const VertexMesh::Part& part = *placed.part;
-  const std::size_t n = std::size_t{3} * corner;
-  const auto color =
-      instance.lamps.color_of(part.material, {part.x[corner], part.y[corner], part.z[corner]},
-                              {part.normals[n], part.normals[n + 1], part.normals[n + 2]});
-  lit_[at] = Rgb{color[0], color[1], color[2], 1};
-  return lit_[at];
-}
-
-SeenFace PlacedMeshes::face(std::uint32_t id, const DrawnTriangle& drawn) {
-  const PlacedPart& placed = parts_[drawn.part];
-  const VertexMesh::Part& part = *placed.part;
-  const Instance& instance = instances_[placed.instance];
-  SeenFace face;
-  face.id = id;
-  face.body = instance.body;
-  face.texture = part.texture;
-  face.mirror = part.mirror;
-  std::array<Float3, 3> corners;
-  std::array<std::uint32_t, 3> which{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    which[k] = part.indices[3 * std::size_t{drawn.triangle} + k];
-    corners[k] = to_camera(instance, {part.x[which[k]], part.y[which[k]], part.z[which[k]]});
+void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& placed,
+                                const MeshClusters::Cluster& cluster, SampleBuffer& out,
+                                RowSpans* spans) const {
+  const MeshClusters& of = placed.part->clusters;
+  SeenPlaces seen;
+  view_places(of.x.data() + cluster.first_place, of.y.data() + cluster.first_place,
+              of.z.data() + cluster.first_place, cluster.places,
+              {instance.turn, instance.shift, fx_, fy_, cx_, cy_}, seen);
+  int left = 0, right = width_ - 1, top = 0, bottom = height_ - 1;
+  if (!seen.is_cut) {
+    left = std::max(left, seen.left / kSubpixels - 1);
+    right = std::min(right, seen.right / kSubpixels + 1);
+    top = std::max(top, seen.top / kSubpixels - 1);
+    bottom = std::min(bottom, seen.bottom / kSubpixels + 1);
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Float3 edge = corners[(k + 1) % 3].cross(corners[(k + 2) % 3]);
-    face.edge[k] = {edge.x(), edge.y(), edge.z()};
-    const Rgb& color = lit(placed, which[k]);
-    face.by_across += edge.x() * color;
-    face.by_down += edge.y() * color;
-    face.at_middle += edge.z() * color;
-    face.mean += color * (1.0f / 3);
-    if (k == 0) face.volume = corners[0].dot(edge);
-    if (part.texture == nullptr) continue;
-    const float u = part.uv[std::size_t{2} * which[k]], v = part.uv[std::size_t{2} * which[k] + 1];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      face.u[axis] += face.edge[k][axis] * u;
-      face.v[axis] += face.edge[k][axis] * v;
-    }
+  if (left > right || top > bottom) return;
+  if (spans != nullptr) spans->add(top, bottom, left, right);
+  const std::uint32_t* triangle = of.triangle.data() + cluster.first_triangle;
+  if (into_ || seen.is_cut) {
+    for (std::size_t i = 0; i < cluster.triangles; ++i)
+      draw_cut(instance, *placed.part, std::size_t{3} * triangle[i], out,
+               placed.first_id + triangle[i]);
+    return;
   }
-  return face;
+  SmallTriangles all{.x = seen.x.data(),
+                     .y = seen.y.data(),
+                     .nearness = seen.nearness.data(),
+                     .corner = {},
+                     .count = cluster.triangles};
+  for (std::size_t k = 0; k < 3; ++k) all.corner[k] = of.place[k].data() + cluster.first_triangle;
+  SeenTriangles shown;
+  find_seen(all, out, shown);
+  const auto corner = [&](std::size_t k, std::size_t i) {
+    const std::uint16_t at = all.corner[k][i];
+    return DrawnCorner{seen.x[at], seen.y[at], seen.nearness[at]};
+  };
+  for (std::size_t n = 0; n < shown.draws; ++n) {
+    const std::size_t i = shown.to_draw[n];
+    out.draw(corner(0, i), corner(1, i), corner(2, i), placed.first_id + triangle[i]);
+  }
+  for (std::size_t n = 0; n < shown.held; ++n) {
+    const SeenTriangles::Sample& sample = shown.samples[n];
+    out.put(sample.at, sample.nearness, placed.first_id + triangle[sample.triangle]);
+  }
 }
 
 }  // namespace probe::render

@@ -1,5 +1,4 @@
-// Meshes in their places as one camera sees them: drawn as triangles into a SampleBuffer, and what
-// each triangle that is seen shows anywhere in the picture.
+// Meshes in their places as one camera sees them, drawn as triangles into a SampleBuffer.
 #pragma once
 
 #include <array>
@@ -30,25 +29,6 @@ class RowSpans {
   std::vector<Span> rows_;
 };
 
-// What a triangle shows where the ray (across, down, 1) meets its plane: numerators that are linear
-// in across and down, over a denominator that is, too.
-struct SeenFace {
-  std::uint32_t id = 0;
-  Rgb by_across{}, by_down{}, at_middle{};     // red, green, blue 0 .. 1, and the denominator
-  std::array<float, 3> u{}, v{};               // by across, by down, in the middle
-  std::array<std::array<float, 3>, 3> edge{};  // what each corner's share comes from, alike
-  float volume = 0;                            // depth (m) = volume / denominator
-  Rgb mean{};                                  // where the plane is not before the eye
-  const MipChain* texture = nullptr;
-  std::uint16_t body = 0;  // as segmentation has it
-  float mirror = 0;
-};
-
-// Counted from 1 on: 0 is nothing.
-struct DrawnTriangle {
-  std::uint32_t part = 0, triangle = 0;
-};
-
 // One picture's worth of visuals, statics and then what moves.
 class PlacedMeshes {
  public:
@@ -73,19 +53,10 @@ class PlacedMeshes {
   void look_into(const Camera& camera, const Mirror& mirror);
   // `pose` of a visual, world; its light has to be found anew.
   void place(std::size_t instance, const Pose& pose, const LampTable& lamps);
-  // Adds what of it is seen to `drawn`; `spans` gets where it may be, if it is not null.
-  void draw(std::size_t instance, SampleBuffer& out, std::vector<DrawnTriangle>& drawn,
-            RowSpans* spans);
-  // `id` is what draw() gave it; `drawn` what it added to.
-  SeenFace face(std::uint32_t id, const DrawnTriangle& drawn);
+  // `spans` gets where it may be, if it is not null. Its triangles have numbers from 1 on, in the
+  // order of visuals, parts and indices.
+  void draw(std::size_t instance, SampleBuffer& out, RowSpans* spans);
 
-  // Of a pixel's middle.
-  float across(int x) const { return (static_cast<float>(x) + 0.5f - cx_) / fx_; }
-  float down(int y) const { return (static_cast<float>(y) + 0.5f - cy_) / fy_; }
-  float fx() const { return fx_; }
-  float fy() const { return fy_; }
-
- private:
   struct Instance {
     std::shared_ptr<const VertexMesh> mesh;
     Pose origin;
@@ -97,22 +68,35 @@ class PlacedMeshes {
     std::array<float, 9> turn{};  // mesh to camera, by rows
     std::array<float, 3> shift{};
     Float3 up =
-        Float3::Zero();       // of the mirror that is looked into: p is before it where up . p is
-    float level = 0;          // above this
-    std::uint32_t stamp = 0;  // of its light
+        Float3::Zero();  // of the mirror that is looked into: p is before it where up . p is
+    float level = 0;     // above this
+    Float3 to_camera(const Float3& point) const;
   };
   struct PlacedPart {
     std::size_t instance = 0;
     const VertexMesh::Part* part = nullptr;
-    std::size_t first_corner = 0;  // in lit_
+    std::size_t first_corner = 0;  // of all corners
+    std::uint32_t first_id = 1;
   };
+  const std::vector<Instance>& instances() const { return instances_; }
+  const std::vector<PlacedPart>& parts() const { return parts_; }
+  std::size_t corners() const { return corners_; }
+  std::uint32_t end_id() const { return end_id_; }  // one more than the last
 
-  Float3 to_camera(const Instance& instance, const Float3& point) const;
-  bool is_outside(const Instance& instance, const VertexMesh::Part& part) const;
+  // Of a pixel's middle.
+  float across(int x) const { return across_[static_cast<std::size_t>(x)]; }
+  float down(int y) const { return down_[static_cast<std::size_t>(y)]; }
+  // How far a step of a pixel goes.
+  float step_across() const { return step_across_; }
+  float step_down() const { return step_down_; }
+
+ private:
+  bool is_outside(const Instance& instance, const Ball& ball) const;
   DrawnCorner corner_at(const Float3& seen) const;
-  bool draw_cut(const Instance& instance, const VertexMesh::Part& part, std::size_t first,
+  void draw_cluster(const Instance& instance, const PlacedPart& placed,
+                    const MeshClusters::Cluster& cluster, SampleBuffer& out, RowSpans* spans) const;
+  void draw_cut(const Instance& instance, const VertexMesh::Part& part, std::size_t first,
                 SampleBuffer& out, std::uint32_t id) const;
-  const Rgb& lit(const PlacedPart& placed, std::uint32_t corner);
 
   std::vector<Instance> instances_;
   std::vector<PlacedPart> parts_;
@@ -124,11 +108,10 @@ class PlacedMeshes {
   float left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // pixels that count
   int width_ = 0, height_ = 0;
   float fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;
-  std::uint32_t stamps_ = 0;
-  std::vector<Rgb> lit_;
-  std::vector<std::uint32_t> lit_stamp_;
-  std::vector<std::int32_t> x_, y_;  // of the part that is drawn
-  std::vector<float> nearness_;
+  std::vector<float> across_, down_;  // by column and by row
+  float step_across_ = 1, step_down_ = 1;
+  std::size_t corners_ = 0;
+  std::uint32_t end_id_ = 1;
 };
 
 }  // namespace probe::render

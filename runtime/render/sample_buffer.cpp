@@ -9,8 +9,8 @@
 namespace probe::render {
 namespace {
 
-using Floats = SampleBuffer::Floats;
-using Ints = SampleBuffer::Ints;
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));
 using Doubles = double __attribute__((vector_size(32)));
 using Longs = std::int64_t __attribute__((vector_size(32)));
 
@@ -24,32 +24,40 @@ inline bool any(const Ints& mask) {
   return (both[0] | both[1]) != 0;
 }
 
-// Puts the samples of one pixel that pass into the buffer.
-inline bool put(const Ints& inside, const Floats& nearness, std::uint32_t id, float* there,
+// Whether the sign of one of them is not set.
+inline bool any_positive(const Ints& of) {
+#ifdef __SSE2__
+  return __builtin_ia32_movmskps(reinterpret_cast<const Floats&>(of)) != 15;
+#else
+  return any(of >= 0);
+#endif
+}
+
+// Puts those that pass into the buffer.
+inline void put(const Ints& inside, const Floats& nearness, std::int32_t id, float* there,
                 std::uint32_t* ids) {
   Floats old;
   std::memcpy(&old, there, sizeof old);
-  const Ints pass = inside & (nearness >= old);
-  if (!any(pass)) return false;
-  const Floats now = pass ? nearness : old;
-  std::memcpy(there, &now, sizeof now);
   Ints was;
   std::memcpy(&was, ids, sizeof was);
-  const Ints is = pass ? Ints{} + static_cast<std::int32_t>(id) : was;
+  const Ints pass = inside & ((nearness > old) | ((nearness == old) & (id >= was)));
+  const Floats now = pass ? nearness : old;
+  std::memcpy(there, &now, sizeof now);
+  const Ints is = pass ? Ints{} + id : was;
   std::memcpy(ids, &is, sizeof is);
-  return true;
 }
 
 // A triangle of at most 64 pixels a side: everything in 32 bits.
-inline bool draw_small(const DrawnCorner* c, double area, const Pixels& in, const Ints& across,
-                       const Ints& down, std::uint32_t id, int width, float* nearness,
-                       std::uint32_t* ids) {
-  const std::int64_t x0 = std::int64_t{in.left} * kSubpixels,
-                     y0 = std::int64_t{in.top} * kSubpixels;
+PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in,
+                             const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
+                             std::uint32_t* ids) {
+  Ints across, down;
+  std::memcpy(&across, grid.across.data(), sizeof across);
+  std::memcpy(&down, grid.down.data(), sizeof down);
   int x[3], y[3];
   for (int i = 0; i < 3; ++i) {
-    x[i] = static_cast<int>(c[i].x - x0);
-    y[i] = static_cast<int>(c[i].y - y0);
+    x[i] = c[i].x - in.left * kSubpixels;
+    y[i] = c[i].y - in.top * kSubpixels;
   }
   const auto inverse = static_cast<float>(1 / area);
   // The edge across from corner i at a sample, twice the area of its part of the triangle.
@@ -59,23 +67,51 @@ inline bool draw_small(const DrawnCorner* c, double area, const Pixels& in, cons
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     const int dx = x[k] - x[j], dy = y[k] - y[j];
-    row[i] = dx * (down - y[j]) - dy * (across - x[j]);
+    row[i] = dx * down - dy * across + (dy * x[j] - dx * y[j]);
     along_x[i] = -dy * kSubpixels;
     along_y[i] = dx * kSubpixels;
     share[i] = Floats{} + c[i].nearness * inverse;
   }
-  bool any_put = false;
+  // Pixels of a wide row before which an edge is not met, or from which on it is not any more.
+  constexpr int kWide = 6;
+  const bool is_wide = in.right - in.left > kWide;
+  float inverse_step[3] = {}, reach[3] = {};
+  if (is_wide) {
+    for (int i = 0; i < 3; ++i) {
+      inverse_step[i] = along_x[i] == 0 ? 0 : 1.0f / static_cast<float>(along_x[i]);
+      reach[i] = static_cast<float>(std::abs(along_x[i]) + std::abs(along_y[i]));
+    }
+  }
   for (int py = in.top; py <= in.bottom; ++py) {
+    int left = in.left, right = in.right;
     Ints e0 = row[0], e1 = row[1], e2 = row[2];
-    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
-                          static_cast<std::size_t>(in.left));
-    for (int px = in.left; px <= in.right; ++px, at += 4) {
-      const Ints inside = (e0 | e1 | e2) >= 0;
-      if (any(inside)) {
+    if (is_wide) {
+      float first = 0, last = static_cast<float>(in.right - in.left);
+      for (int i = 0; i < 3; ++i) {
+        const float place = -(static_cast<float>(row[i][0]) + reach[i]) * inverse_step[i];
+        if (along_x[i] > 0) first = std::max(first, place - 1);
+        if (along_x[i] < 0) last = std::min(last, place + 1);
+      }
+      if (first > last) {
+        left = right + 1;
+      } else {
+        const auto skipped = static_cast<int>(first);
+        left += skipped;
+        right = in.left + static_cast<int>(last);
+        e0 += skipped * along_x[0];
+        e1 += skipped * along_x[1];
+        e2 += skipped * along_x[2];
+      }
+    }
+    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(stride) +
+                          static_cast<std::size_t>(left));
+    for (int px = left; px <= right; ++px, at += 4) {
+      const Ints outside = e0 | e1 | e2;
+      if (any_positive(outside)) {
         const Floats here = __builtin_convertvector(e0, Floats) * share[0] +
                             __builtin_convertvector(e1, Floats) * share[1] +
                             __builtin_convertvector(e2, Floats) * share[2];
-        any_put |= put(inside, here, id, nearness + at, ids + at);
+        put(outside >= 0, here, id, nearness + at, ids + at);
       }
       e0 += along_x[0];
       e1 += along_x[1];
@@ -85,13 +121,15 @@ inline bool draw_small(const DrawnCorner* c, double area, const Pixels& in, cons
     row[1] += along_y[1];
     row[2] += along_y[2];
   }
-  return any_put;
 }
 
 // Any triangle: edges in doubles, which hold these whole numbers exactly.
-PROBE_CLONES bool draw_large(const DrawnCorner* c, double area, const Pixels& in,
-                             const Ints& across, const Ints& down, std::uint32_t id, int width,
-                             float* nearness, std::uint32_t* ids) {
+PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in,
+                             const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
+                             std::uint32_t* ids) {
+  Ints across, down;
+  std::memcpy(&across, grid.across.data(), sizeof across);
+  std::memcpy(&down, grid.down.data(), sizeof down);
   const Doubles fx = __builtin_convertvector(__builtin_convertvector(across, Floats), Doubles);
   const Doubles fy = __builtin_convertvector(__builtin_convertvector(down, Floats), Doubles);
   double along_x[3], along_y[3], constant[3];
@@ -110,7 +148,6 @@ PROBE_CLONES bool draw_large(const DrawnCorner* c, double area, const Pixels& in
   Doubles offset[3];
   for (int i = 0; i < 3; ++i) offset[i] = along_x[i] * fx + along_y[i] * fy;
   const Floats lean = __builtin_convertvector(slope_x * fx + slope_y * fy, Floats);
-  bool any_put = false;
   for (int py = in.top; py <= in.bottom; ++py) {
     // Where along the row all edges can be met by some sample, with a pixel of room.
     const double y = static_cast<double>(py) * kSubpixels;
@@ -126,7 +163,7 @@ PROBE_CLONES bool draw_large(const DrawnCorner* c, double area, const Pixels& in
     }
     if (!(first <= last)) continue;
     const int left = static_cast<int>(first), right = static_cast<int>(last);
-    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(width) +
+    std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(stride) +
                           static_cast<std::size_t>(left));
     const double x0 = static_cast<double>(left) * kSubpixels;
     Doubles e0 = row[0] + along_x[0] * x0 + offset[0];
@@ -139,15 +176,13 @@ PROBE_CLONES bool draw_large(const DrawnCorner* c, double area, const Pixels& in
     for (int px = left; px <= right; ++px, at += 4) {
       const Longs wide = (e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0);
       const Ints inside = __builtin_convertvector(wide, Ints);
-      if (any(inside))
-        any_put |= put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
+      if (any(inside)) put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
       e0 += step0;
       e1 += step1;
       e2 += step2;
       here += step;
     }
   }
-  return any_put;
 }
 
 }  // namespace
@@ -156,12 +191,10 @@ void SampleBuffer::resize(int width, int height, bool smooth) {
   width_ = width;
   height_ = height;
   // The four places of a rotated grid: each in a row and a column of its own.
-  across_ = smooth ? Ints{96, 224, 32, 160} : Ints{128, 128, 128, 128};
-  down_ = smooth ? Ints{224, 160, 96, 32} : Ints{128, 128, 128, 128};
-  low_ = smooth ? 32 : 128;
-  high_ = smooth ? 224 : 128;
+  grid_ = smooth ? SampleGrid{{96, 224, 32, 160}, {224, 160, 96, 32}, 32, 224}
+                 : SampleGrid{{128, 128, 128, 128}, {128, 128, 128, 128}, 128, 128};
   const std::size_t samples =
-      std::size_t{4} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+      std::size_t{4} * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height);
   nearness_.resize(samples);
   id_.resize(samples);
   clear();
@@ -172,27 +205,26 @@ void SampleBuffer::clear() {
   std::fill(id_.begin(), id_.end(), 0u);
 }
 
-bool SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c,
+void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c,
                         std::uint32_t id) {
   const double area = static_cast<double>(b.x - a.x) * static_cast<double>(c.y - a.y) -
                       static_cast<double>(c.x - a.x) * static_cast<double>(b.y - a.y);
   // Rows go down, so what turns against the clock in the world does so with a negative area.
-  if (area >= 0) return false;
+  if (area >= 0) return;
   const DrawnCorner corners[3] = {a, c, b};
   // The first and the last pixel of which a sample can be inside.
-  const auto first = [&](std::int64_t least) { return (least - high_ + kSubpixels - 1) >> 8; };
-  const auto last = [&](std::int64_t greatest) { return (greatest - low_) >> 8; };
+  const auto first = [&](int least) { return (least - grid_.high + kSubpixels - 1) >> 8; };
+  const auto last = [&](int greatest) { return (greatest - grid_.low) >> 8; };
   const auto [left, right] = std::minmax({a.x, b.x, c.x});
   const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
-  const std::int64_t x0 = first(left), x1 = last(right), y0 = first(top), y1 = last(bottom);
-  if (x0 > x1 || y0 > y1 || x1 < 0 || y1 < 0 || x0 >= width_ || y0 >= height_) return false;
-  const Pixels in{static_cast<int>(std::max<std::int64_t>(x0, 0)),
-                  static_cast<int>(std::min<std::int64_t>(x1, width_ - 1)),
-                  static_cast<int>(std::max<std::int64_t>(y0, 0)),
-                  static_cast<int>(std::min<std::int64_t>(y1, height_ - 1))};
-  constexpr std::int64_t kSmall = 64;
+  const int x0 = first(left), x1 = last(right), y0 = first(top), y1 = last(bottom);
+  if (x0 > x1 || y0 > y1 || x1 < 0 || y1 < 0 || x0 >= width_ || y0 >= height_) return;
+  const Pixels in{std::max(x0, 0), std::min(x1, width_ - 1), std::max(y0, 0),
+                  std::min(y1, height_ - 1)};
+  constexpr int kSmall = 64;
   const auto draw = x1 - x0 < kSmall && y1 - y0 < kSmall ? draw_small : draw_large;
-  return draw(corners, -area, in, across_, down_, id, width_, nearness_.data(), id_.data());
+  draw(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
+       id_.data());
 }
 
 void SampleBuffer::restore(const SampleBuffer& from, int row, int left, int right) {

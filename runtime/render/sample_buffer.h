@@ -1,8 +1,11 @@
-// Which triangle each sample of a picture shows: nearest wins, of equally near ones the last. A
+// Which triangle each sample of a picture shows: nearest wins, of equally near ones the one of the
+// greatest number, in whatever order they are drawn. A
 // pixel has four samples, those that 4-sample antialiasing of hardware has; or, without it, one in
 // its middle, kept four times.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,25 +15,39 @@ inline constexpr int kSubpixels = 256;  // a pixel's side, as corners are counte
 
 // A corner as it is drawn: place in subpixels, row 0 on top, and 1 / depth (1/m).
 struct DrawnCorner {
-  std::int64_t x = 0, y = 0;
+  std::int32_t x = 0, y = 0;
   float nearness = 0;
+};
+
+// Where the samples of a pixel lie, subpixels from its left top; least and greatest of both.
+struct SampleGrid {
+  std::array<std::int32_t, 4> across{}, down{};
+  int low = 0, high = 0;
 };
 
 class SampleBuffer {
  public:
-  using Floats = float __attribute__((vector_size(16)));
-  using Ints = std::int32_t __attribute__((vector_size(16)));
-
   // `smooth`: four places a pixel.
   void resize(int width, int height, bool smooth);
   void clear();
-  // The samples that are in the triangle and nearer than what is there become `id`; says whether
-  // any did. Corners lie within 2^27 subpixels. A face whose corners turn against the clock as seen
-  // is a front; the back of one shows nothing.
-  bool draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c, std::uint32_t id);
+  // The samples that are in the triangle and nearer than what is there become `id`, from 1 on and
+  // below 2^31. Corners lie within 2^27 subpixels. A face whose corners turn against the clock as
+  // seen is a front; the back of one shows nothing.
+  void draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c, std::uint32_t id);
+  // One sample, numbered (y width + x) 4 + which, that a triangle holds.
+  void put(std::size_t sample, float nearness, std::uint32_t id) {
+    float& near = nearness_[sample];
+    std::uint32_t& shown = id_[sample];
+    const bool passes = nearness > near || (nearness == near && id >= shown);
+    near = passes ? nearness : near;
+    shown = passes ? id : shown;
+  }
   // What another buffer of the same size has in columns [left, right) of a row.
   void restore(const SampleBuffer& from, int row, int left, int right);
 
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const SampleGrid& grid() const { return grid_; }
   const std::uint32_t* ids(int x, int y) const { return &id_[4 * at(x, y)]; }
   const float* nearness(int x, int y) const { return &nearness_[4 * at(x, y)]; }
 
@@ -40,8 +57,7 @@ class SampleBuffer {
            static_cast<std::size_t>(x);
   }
   int width_ = 0, height_ = 0;
-  Ints across_{}, down_{};  // of the samples, subpixels from the pixel's left top
-  int low_ = 0, high_ = 0;  // least and greatest of both
+  SampleGrid grid_;
   std::vector<float> nearness_;
   std::vector<std::uint32_t> id_;
 };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/render/clones.h"
+
 namespace probe::render {
 namespace {
 
@@ -33,6 +35,100 @@ std::array<float, 3> times(const std::array<double, 3>& color, double strength) 
   std::array<float, 3> out{};
   for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<float>(color[k] * strength);
   return out;
+}
+
+// Some corners, and what has come together of their light.
+struct LightBlock {
+  static constexpr std::size_t kMost = 128;
+  std::size_t count = 0;
+  std::array<const float*, 3> position{}, normal{};
+  std::array<std::array<float, kMost>, 3> view, light, gloss;  // view: unit, towards the eye
+};
+
+PROBE_CLONES void begin_light(LightBlock& block, const Float3& eye,
+                              const std::array<float, 3>& ambient) {
+  const float *px = block.position[0], *py = block.position[1], *pz = block.position[2];
+  const float ex = eye.x(), ey = eye.y(), ez = eye.z();
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const float x = ex - px[i], y = ey - py[i], z = ez - pz[i];
+    const float square = x * x + (y * y + z * z);
+    const float length = square > 0 ? std::sqrt(square) : 1;
+    block.view[0][i] = x / length;
+    block.view[1][i] = y / length;
+    block.view[2][i] = z / length;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < block.count; ++i) {
+      block.light[k][i] = ambient[k];
+      block.gloss[k][i] = 0;
+    }
+  }
+}
+
+struct LampFactors {
+  const LampsThere::Lamp& lamp;
+  const float* narrowing;
+  const float* shine;
+  float specular;  // of the material
+  std::array<float, 3> place, forward;
+};
+
+// Corner i, lit from (x, y, z), unit, by what reaches it of the lamp.
+template <typename Reach>
+[[gnu::always_inline]] inline void add_lamp(LightBlock& block, const LampFactors& by,
+                                            const Reach& reach_of) {
+  const float *nx = block.normal[0], *ny = block.normal[1], *nz = block.normal[2];
+  const std::array<float, 3> ambient = by.lamp.ambient, diffuse = by.lamp.diffuse,
+                             specular = by.lamp.specular;
+  const float* const shine = by.shine;
+  const float of_material = by.specular;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < block.count; ++i) {
+    float x = by.place[0], y = by.place[1], z = by.place[2];
+    // Nothing reaches what lies beside a spot: zeros are added, which change no light.
+    const float reach = reach_of(i, x, y, z);
+    const float facing = nx[i] * x + (ny[i] * y + nz[i] * z);
+    const bool is_lit = facing > 0;
+    const float hx = x + block.view[0][i], hy = y + block.view[1][i], hz = z + block.view[2][i];
+    const float square = hx * hx + (hy * hy + hz * hz);
+    const float length = square > 0 ? std::sqrt(square) : 1;
+    const float along = nx[i] * (hx / length) + (ny[i] * (hy / length) + nz[i] * (hz / length));
+    const float power =
+        PowerTable::read(shine, along < 0.0f ? 0.0f : (1.0f < along ? 1.0f : along));
+    const float bright = is_lit ? reach * of_material * power : 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float with_ambient = block.light[k][i] + reach * ambient[k];
+      const float straight = reach * diffuse[k] * facing;
+      block.light[k][i] = with_ambient + (is_lit ? straight : 0);
+      block.gloss[k][i] += bright * specular[k];
+    }
+  }
+}
+
+PROBE_CLONES void add_sun(LightBlock& block, const LampFactors& by) {
+  add_lamp(block, by, [](std::size_t, float, float, float) { return 1.0f; });
+}
+
+PROBE_CLONES void add_spot(LightBlock& block, const LampFactors& by) {
+  const float *px = block.position[0], *py = block.position[1], *pz = block.position[2];
+  const std::array<float, 3> forward = by.forward, fade = by.lamp.fade;
+  const float cutoff = by.lamp.cutoff_cosine;
+  const float* const narrowing = by.narrowing;
+  add_lamp(block, by, [=](std::size_t i, float& x, float& y, float& z) {
+    x -= px[i];
+    y -= py[i];
+    z -= pz[i];
+    const float distance = std::sqrt(x * x + (y * y + z * z));
+    const float by_distance = distance > 0 ? distance : 1;
+    x /= by_distance;
+    y /= by_distance;
+    z /= by_distance;
+    const float along = -(x * forward[0] + (y * forward[1] + z * forward[2]));
+    const float narrow =
+        PowerTable::read(narrowing, along < 0.0f ? 0.0f : (1.0f < along ? 1.0f : along));
+    const float reach = narrow / (fade[0] + distance * (fade[1] + distance * fade[2]));
+    return along < cutoff ? 0 : reach;
+  });
 }
 
 bool is_strength(double value) { return std::isfinite(value) && value >= 0; }
@@ -107,37 +203,56 @@ void LampTable::put(const Pose& place, const Vec3& eye, const Vec3& forward,
   }
 }
 
-std::array<float, 3> LampsThere::color_of(const VertexMaterial& material, const Float3& position,
-                                          const Float3& normal) const {
-  std::array<float, 3> light = ambient, gloss{};
-  const Float3 view = (eye - position).normalized();
-  for (const Lamp& lamp : lamps) {
-    Float3 toward = lamp.place;
-    float reach = 1;
-    if (lamp.is_spot) {
-      toward -= position;
-      const float distance = toward.norm();
-      toward /= distance > 0 ? distance : 1;
-      const float along = -toward.dot(lamp.forward);
-      if (along < lamp.cutoff_cosine) continue;
-      reach = lamp.narrowing->at(std::clamp(along, 0.0f, 1.0f));
-      reach /= lamp.fade[0] + distance * (lamp.fade[1] + distance * lamp.fade[2]);
-    }
-    const float facing = normal.dot(toward);
-    for (std::size_t k = 0; k < 3; ++k) light[k] += reach * lamp.ambient[k];
-    if (!(facing > 0)) continue;
-    const Float3 half = (toward + view).normalized();
-    const float shine =
-        reach * material.specular * material.shine->at(std::clamp(normal.dot(half), 0.0f, 1.0f));
+bool LampsThere::Lamp::may_reach(const Ball& ball) const {
+  if (!is_spot || cutoff_cosine <= 0) return true;
+  const Float3 there = ball.middle - place;
+  const float along = there.dot(forward), beside = (there - along * forward).norm();
+  const float sine = std::sqrt(std::max(0.0f, 1 - cutoff_cosine * cutoff_cosine));
+  constexpr float kRoom = 1e-3f;  // m, and of the distance: far more than is lost by rounding
+  return beside * cutoff_cosine - along * sine <= ball.radius + kRoom * (1 + there.norm());
+}
+
+void LampsThere::light(const VertexMaterial& material, const CornerArrays& corners,
+                       const Ball& around) const {
+  for (std::size_t first = 0; first < corners.count; first += LightBlock::kMost) {
+    LightBlock block;
+    block.count = std::min(LightBlock::kMost, corners.count - first);
     for (std::size_t k = 0; k < 3; ++k) {
-      light[k] += reach * lamp.diffuse[k] * facing;
-      gloss[k] += shine * lamp.specular[k];
+      block.position[k] = corners.position[k] + first;
+      block.normal[k] = corners.normal[k] + first;
+    }
+    begin_light(block, eye, ambient);
+    for (const Lamp& lamp : lamps) {
+      if (!lamp.may_reach(around)) continue;  // it adds nothing to any
+      const LampFactors by{lamp,
+                           lamp.narrowing->values(),
+                           material.shine->values(),
+                           material.specular,
+                           {lamp.place.x(), lamp.place.y(), lamp.place.z()},
+                           {lamp.forward.x(), lamp.forward.y(), lamp.forward.z()}};
+      lamp.is_spot ? add_spot(block, by) : add_sun(block, by);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      float* color = corners.color[k] + first;
+      for (std::size_t i = 0; i < block.count; ++i)
+        color[i] =
+            std::clamp(share * (material.emission[k] + block.light[k][i] * material.color[k]) +
+                           block.gloss[k][i],
+                       0.0f, 1.0f);
     }
   }
+}
+
+std::array<float, 3> LampsThere::color_of(const VertexMaterial& material, const Float3& position,
+                                          const Float3& normal) const {
   std::array<float, 3> color{};
-  for (std::size_t k = 0; k < 3; ++k)
-    color[k] = std::clamp(share * (material.emission[k] + light[k] * material.color[k]) + gloss[k],
-                          0.0f, 1.0f);
+  CornerArrays one{.count = 1};
+  for (std::size_t k = 0; k < 3; ++k) {
+    one.position[k] = position.data() + k;
+    one.normal[k] = normal.data() + k;
+    one.color[k] = &color[k];
+  }
+  light(material, one, {position, 0});
   return color;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,16 +15,25 @@ namespace probe::render {
 
 using Float3 = Eigen::Vector3f;
 
+// Around some places.
+struct Ball {
+  Float3 middle = Float3::Zero();
+  float radius = 0;
+};
+
 // x^e for x in [0, 1], 0^0 being 1: read between 4096 steps, made without a C library's pow.
 class PowerTable {
  public:
   explicit PowerTable(double exponent);
-  float at(float x) const {
+  float at(float x) const { return read(values_.data(), x); }
+  // Of `values()`: loops over arrays read the table without the object.
+  static float read(const float* values, float x) {
     const float place = x * static_cast<float>(kSteps);
-    const auto i = static_cast<std::size_t>(place);
-    const float low = values_[i];
-    return low + (values_[i + 1] - low) * (place - static_cast<float>(i));
+    const auto i = static_cast<std::int32_t>(place);
+    const float low = values[i];
+    return low + (values[i + 1] - low) * (place - static_cast<float>(i));
   }
+  const float* values() const { return values_.data(); }
 
  private:
   static constexpr int kSteps = 4096;
@@ -37,6 +48,13 @@ struct VertexMaterial {
   std::shared_ptr<const PowerTable> shine;
 };
 
+// Corners as arrays of `count`: where they are, their unit normals, and the colours to be found.
+struct CornerArrays {
+  std::size_t count = 0;
+  std::array<const float*, 3> position{}, normal{};
+  std::array<float*, 3> color{};
+};
+
 // Lamps as a mesh sees them: places and directions in its frame.
 struct LampsThere {
   struct Lamp {
@@ -47,13 +65,17 @@ struct LampsThere {
     const PowerTable* narrowing = nullptr;
     std::array<float, 3> fade{1, 0, 0};
     std::array<float, 3> diffuse{}, specular{}, ambient{};
+    // Whether something in the ball may lie in the cone of a spot.
+    bool may_reach(const Ball& ball) const;
   };
   std::vector<Lamp> lamps;
   std::array<float, 3> ambient{};
   Float3 eye = Float3::Zero();
   float share = 1;  // of a material's colour, not of its highlight: what a mirror shows
 
-  // Between 0 and 1.
+  // Of corners of one material, between 0 and 1; all of them lie in the ball.
+  void light(const VertexMaterial& material, const CornerArrays& corners, const Ball& around) const;
+  // Of one.
   std::array<float, 3> color_of(const VertexMaterial& material, const Float3& position,
                                 const Float3& normal) const;
 };

@@ -59,20 +59,9 @@ Result<std::shared_ptr<const VertexMesh>> VertexMesh::build(
       const Float3 unit = normal.norm() > 0 ? Float3(normal.normalized()) : Float3::UnitZ();
       part.normals.insert(part.normals.end(), {unit.x(), unit.y(), unit.z()});
     }
-    const auto bounds = [](const std::vector<float>& values) {
-      const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      return std::pair(*low, *high);
-    };
-    if (corners > 0) {
-      const auto [left, right] = bounds(part.x);
-      const auto [front, back] = bounds(part.y);
-      const auto [low, high] = bounds(part.z);
-      part.middle = Float3(left + right, front + back, low + high) / 2;
-      for (std::size_t i = 0; i < corners; ++i)
-        part.radius =
-            std::max(part.radius, (Float3(part.x[i], part.y[i], part.z[i]) - part.middle).norm());
-    }
     part.indices = from.indices;
+    part.around = ball_around(part.x, part.y, part.z);
+    part.clusters = MeshClusters::build(part.x, part.y, part.z, part.indices);
     part.material.emission = display(material.emission);
     part.material.specular = material.specular;
     auto& shine = shines[material.shininess];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/render/mesh_clusters.h"
 #include "runtime/render/mipmap.h"
 #include "runtime/render/vertex_law.h"
 #include "runtime/scene/mesh.h"
@@ -19,8 +20,8 @@ struct VertexMesh {
     std::vector<float> normals;  // 3 a corner, unit
     std::vector<float> uv;       // 2 a corner; none: no texture
     std::vector<std::uint32_t> indices;
-    Float3 middle = Float3::Zero();  // of a ball around all of it
-    float radius = 0;
+    Ball around;
+    MeshClusters clusters;  // the same triangles, as they are drawn
     VertexMaterial material;
     const MipChain* texture = nullptr;
     float mirror = 0;  // share of what a flat metal shows of what is before it

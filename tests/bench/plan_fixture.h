@@ -20,16 +20,19 @@ struct Fixture {
   std::shared_ptr<const stage::SharedAssets> assets;
 };
 
+// `assets`: the folder of meshes and what belongs to them; empty for ours.
 inline Fixture make_fixture(const std::string& file, const std::string& suite,
-                            std::string_view task) {
+                            std::string_view task, const std::string& assets = "") {
   const std::string files[] = {file};
-  Compilation compiled = need(build(
-      files,
-      {.asset_root = asset_root(), .suite = "", .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}}));
+  const std::string root = assets.empty() ? asset_root() : assets;
+  Compilation compiled =
+      need(build(files, {.asset_root = root,
+                         .suite = "",
+                         .library_folders = {VLAPROBE_SOURCE_DIR "/dsl", VLAPROBE_SOURCE_DIR}}));
   Fixture out{need(plan::Plan::from_bytes(std::move(compiled.plan))), suite, 0, nullptr};
   out.task = out.plan.find_task(task).value();
   const std::uint32_t tasks[] = {out.task};
-  out.assets = need(stage::SharedAssets::load(out.plan, asset_root(), tasks));
+  out.assets = need(stage::SharedAssets::load(out.plan, root, tasks));
   return out;
 }
 

@@ -319,6 +319,66 @@ TEST_CASE("what moves over what stands still gives the bytes of a picture that i
   }
 }
 
+TEST_CASE("what rests, and moves again, shows what it shows in a picture that is drawn whole") {
+  SceneSpec spec;
+  spec.camera = plain_camera(96, 64);
+  spec.samples = 2;
+  Lamp head;
+  head.kind = Lamp::Kind::kHeadlight;
+  head.diffuse = 0.8;
+  head.ambient = 0.1;
+  spec.lights = lit_by({head});
+  spec.statics = {visual(square(1.5), kBackdrop, "wall")};
+  spec.statics[0].origin = at(2, 0, 0);
+  spec.dynamics = {visual(sphere(0.2, 24), 0, "ball"), visual(sphere(0.2, 30), 1, "other"),
+                   visual(square(0.3), 2, "card")};
+  const auto kept_one = vertex_renderer(spec), whole = vertex_renderer(spec);
+  std::vector<Pose> poses = {at(1, 0.1, 0), at(1, -0.1, 0.05), at(1.1, 0, 0)};
+  std::mt19937 random(9);
+  std::uniform_int_distribution<int> which(0, 9);
+  std::uniform_real_distribution<double> step(-0.05, 0.05);
+  for (int frame = 0; frame < 80; ++frame) {
+    CAPTURE(frame);
+    // Mostly nothing moves: each comes to rest, is left beside one that moves, and moves again.
+    const int moves = which(random);
+    if (moves < 3) poses[static_cast<std::size_t>(moves)].position += Vec3(0, step(random), 0);
+    CHECK(kept(kept_one->render(poses)) == kept(whole->render_full(poses)));
+  }
+}
+
+TEST_CASE("a spot that cannot reach a mesh is left out, and one that may is not") {
+  VertexMaterial material;
+  material.shine = std::make_shared<const PowerTable>(32);
+  Lamp spot;
+  spot.position = Vec3(0, 0, 2);
+  spot.cutoff_cosine = std::sqrt(0.5);
+  spot.specular = 0.3;
+  const auto table = LampTable::make(lit_by({spot}));
+  REQUIRE(table.ok());
+  LampsThere there;
+  table->put(Pose{}, Vec3(0, 1, 2), Vec3(0, 0, -1), there);
+  int left_out = 0;
+  for (double x = 0; x < 4; x += 0.01) {
+    CAPTURE(x);
+    const Float3 at(static_cast<float>(x), 0, 0);
+    constexpr float kRadius = 0.05f;
+    if (there.lamps[0].may_reach({at, kRadius})) continue;
+    ++left_out;
+    // As one of much that is lit.
+    const Float3 corner = at - Float3(kRadius, 0, 0), normal = Float3::UnitZ();
+    std::array<float, 3> color{1, 1, 1};
+    CornerArrays one{.count = 1};
+    for (std::size_t k = 0; k < 3; ++k) {
+      one.position[k] = corner.data() + k;
+      one.normal[k] = normal.data() + k;
+      one.color[k] = &color[k];
+    }
+    there.light(material, one, {at, 100});
+    CHECK(color == std::array<float, 3>{});
+  }
+  CHECK(left_out > 150);
+}
+
 TEST_CASE("a floor that passes under the eye is cut there and drawn to the lower edge") {
   auto floor = colored(quad_part(Vec3(0, 0, -0.2), Vec3(0, -3, 0), Vec3(3, 0, 0)), 0.5f);
   const auto frame =
