@@ -7,3 +7,10 @@
 #else
 #define PROBE_CLONES
 #endif
+
+// Before a loop: no step reads what another writes.
+#if defined(__clang__)
+#define PROBE_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define PROBE_INDEPENDENT _Pragma("GCC ivdep")
+#endif

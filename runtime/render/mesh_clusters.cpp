@@ -86,8 +86,8 @@ MeshClusters MeshClusters::build(std::span<const float> x, std::span<const float
     }
     const auto at = [&](std::uint32_t i) { return std::tuple(x[i], y[i], z[i]); };
     std::ranges::sort(corners, {}, at);
-    const auto repeated = std::ranges::unique(corners, {}, at);
-    corners.erase(repeated.begin(), repeated.end());
+    const auto is_same = [&](std::uint32_t a, std::uint32_t b) { return at(a) == at(b); };
+    corners.erase(std::unique(corners.begin(), corners.end(), is_same), corners.end());
     for (const std::uint32_t i : corners) {
       out.x.push_back(x[i]);
       out.y.push_back(y[i]);

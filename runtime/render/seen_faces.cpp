@@ -4,6 +4,14 @@
 
 namespace probe::render {
 
+namespace {
+
+// The two axes that follow, for products across.
+inline Rgb next(const Rgb& of) { return __builtin_shufflevector(of, of, 1, 2, 0, 3); }
+inline Rgb after(const Rgb& of) { return __builtin_shufflevector(of, of, 2, 0, 1, 3); }
+
+}  // namespace
+
 void SeenFaces::begin(const PlacedMeshes& meshes) {
   slots_.resize(meshes.end_id());
   corner_slots_.resize(meshes.corners());
@@ -89,15 +97,12 @@ void SeenFaces::face(const PlacedMeshes& meshes, const Asked& asked, SeenFace& f
     const std::uint32_t i = asked.corner[k];
     corner[k] = by_x * part.x[i] + by_y * part.y[i] + by_z * part.z[i] + shift;
   }
-  using Order = std::int32_t __attribute__((vector_size(16)));
-  constexpr Order kNext{1, 2, 0, 3}, kAfter{2, 0, 1, 3};
   face.by_across = face.by_down = face.at_middle = face.mean = Rgb{};
   face.uv_by_across = face.uv_by_down = face.uv_at_middle = Rgb{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Rgb& a = corner[(k + 1) % 3];
     const Rgb& b = corner[(k + 2) % 3];
-    const Rgb edge = __builtin_shuffle(a, kNext) * __builtin_shuffle(b, kAfter) -
-                     __builtin_shuffle(a, kAfter) * __builtin_shuffle(b, kNext);
+    const Rgb edge = next(a) * after(b) - after(a) * next(b);
     face.edge[k] = edge;
     const std::size_t at = asked.lit[k];
     const Rgb color{red[at], red[count + at], red[2 * count + at], 1};

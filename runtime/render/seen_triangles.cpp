@@ -50,8 +50,8 @@ PROBE_CLONES std::int32_t sort_out(const Corners& __restrict corners, std::size_
     }
     const bool is_seen = (area > 0) & is_within & holds;
     const bool is_tiny = is_seen & (side < kSubpixels);
-    found.is_drawn[i] = is_large | (is_seen & (side >= kSubpixels)) ? 1 : 0;
-    found.is_tiny[i] = is_tiny ? 1 : 0;
+    found.is_drawn[i] = is(is_large | (is_seen & (side >= kSubpixels)));
+    found.is_tiny[i] = is(is_tiny);
     found.twice_area[i] = area;
     any_tiny |= found.is_tiny[i];
   }
@@ -87,10 +87,8 @@ PROBE_CLONES void find_held(const Corners& __restrict corners, const Found& __re
                   static_cast<float>(e1) * (corners.nearness[1][i] * inverse) +
                   static_cast<float>(e2) * (corners.nearness[2][i] * inverse);
     pixel[i] = row * width + column;
-    holds[i] =
-        ((e0 | e1 | e2) >= 0) & (column >= 0) & (column < width) & (row >= 0) & (row < height)
-            ? found.is_tiny[i]
-            : 0;
+    const bool is_in = (column >= 0) & (column < width) & (row >= 0) & (row < height);
+    holds[i] = is(((e0 | e1 | e2) >= 0) & is_in) & found.is_tiny[i];
   }
 }
 

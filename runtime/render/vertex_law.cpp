@@ -82,7 +82,7 @@ template <typename Reach>
                              specular = by.lamp.specular;
   const float* const shine = by.shine;
   const float of_material = by.specular;
-#pragma GCC ivdep
+  PROBE_INDEPENDENT
   for (std::size_t i = 0; i < block.count; ++i) {
     float x = by.place[0], y = by.place[1], z = by.place[2];
     // Nothing reaches what lies beside a spot: zeros are added, which change no light.
