@@ -14,20 +14,35 @@ namespace {
 
 constexpr std::size_t kArm = 7;
 
-Mat3 rows_of(const Json& m) {
-  const auto numbers = m.get<std::vector<double>>();
+Mat3 rows_of(const std::vector<double>& numbers) {
   Mat3 out;
   for (int i = 0; i < 9; ++i) out(i / 3, i % 3) = numbers[static_cast<std::size_t>(i)];
   return out;
 }
-Vec3 vector_of(const Json& v) { return Vec3(v.get<std::vector<double>>().data()); }
 
-// Of a substep for which Jacobian and mass matrix were written out.
-robot::Dynamics recorded(const Json& r) {
-  robot::Dynamics d;
-  const auto q = r["q"].get<std::vector<double>>(), u = r["dq"].get<std::vector<double>>(),
-             bias = r["bias"].get<std::vector<double>>(), j = r["J"].get<std::vector<double>>(),
-             m = r["M"].get<std::vector<double>>();
+// A substep for which Jacobian and mass matrix were written out.
+struct Substep {
+  robot::Dynamics state;
+  Vec3 goal;
+  Mat3 goal_axes;
+  std::vector<double> torques;  // N m, not clipped yet
+};
+
+Result<Substep> substep_of(const Json& r, const std::string& where) {
+  Substep out;
+  robot::Dynamics& d = out.state;
+  PROBE_ASSIGN(const auto q, numbers(r, "q", 7, where));
+  PROBE_ASSIGN(const auto u, numbers(r, "dq", 7, where));
+  PROBE_ASSIGN(const auto bias, numbers(r, "bias", 7, where));
+  PROBE_ASSIGN(const auto j, numbers(r, "J", 42, where));
+  PROBE_ASSIGN(const auto m, numbers(r, "M", 49, where));
+  PROBE_ASSIGN(const auto place, numbers(r, "ee_pos", 3, where));
+  PROBE_ASSIGN(const auto velocity, numbers(r, "ee_vel", 3, where));
+  PROBE_ASSIGN(const auto spin, numbers(r, "ee_omega", 3, where));
+  PROBE_ASSIGN(const auto axes, numbers(r, "ee_mat", 9, where));
+  PROBE_ASSIGN(const auto goal, numbers(r, "goal_pos", 3, where));
+  PROBE_ASSIGN(const auto goal_axes, numbers(r, "goal_mat", 9, where));
+  PROBE_ASSIGN(out.torques, numbers(r, "tau", 7, where));
   d.q.resize(7), d.u.resize(7), d.bias.resize(7), d.mass.resize(7, 7), d.jacobian.resize(6, 7);
   for (int i = 0; i < 7; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -35,11 +50,13 @@ robot::Dynamics recorded(const Json& r) {
     for (std::size_t k = 0; k < 7; ++k) d.mass(i, static_cast<int>(k)) = m[at * 7 + k];
     for (std::size_t k = 0; k < 6; ++k) d.jacobian(static_cast<int>(k), i) = j[k * 7 + at];
   }
-  d.position = vector_of(r["ee_pos"]);
-  d.velocity = vector_of(r["ee_vel"]);
-  d.spin = vector_of(r["ee_omega"]);
-  d.axes = rows_of(r["ee_mat"]);
-  return d;
+  d.position = Vec3(place.data());
+  d.velocity = Vec3(velocity.data());
+  d.spin = Vec3(spin.data());
+  d.axes = rows_of(axes);
+  out.goal = Vec3(goal.data());
+  out.goal_axes = rows_of(goal_axes);
+  return out;
 }
 
 }  // namespace
@@ -57,7 +74,7 @@ Result<FidelityRow> torques_row(Imported& imported, const Records& records) {
   for (const RecordedTask& task : records.tasks()) {
     const std::string file = "reference/osc_unit_" + task.key() + ".json";
     if (!records.has(file)) continue;
-    PROBE_ASSIGN(const std::string text, records.text(file));
+    PROBE_ASSIGN(const Json all, records.json(file));
     PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), false));
     const auto* law = std::get_if<robot::OscPose>(&stage->robot().law);
     if (law == nullptr)
@@ -65,20 +82,19 @@ Result<FidelityRow> torques_row(Imported& imported, const Records& records) {
     PROBE_ASSIGN(
         robot::OscPoseController osc,
         robot::OscPoseController::create(*stage->robot().model, stage->robot().control, *law));
-    const Json all = Json::parse(text);
+    if (!all.is_array()) return Failure{Fault::kUsage, "expected an array of substeps", file};
     for (const Json& r : all) {
-      if (r["J"].is_null()) continue;
+      if (!r.is_object() || r.find("J") == nullptr || !r["J"].is_array()) continue;
+      PROBE_ASSIGN(const Substep substep, substep_of(r, file));
       robot::ControlState saved;
-      saved.target = {vector_of(r["goal_pos"]), Quat(rows_of(r["goal_mat"])).normalized()};
+      saved.target = {substep.goal, Quat(substep.goal_axes).normalized()};
       saved.joint_targets = {0, 0};
       PROBE_TRY(osc.restore(saved));
       std::array<double, 9> tau{};
-      osc.efforts(recorded(r), tau);
-      const auto wanted = r["tau"].get<std::vector<double>>();
+      osc.efforts(substep.state, tau);
       for (std::size_t i = 0; i < kArm; ++i) {
-        // What was recorded is not clipped yet.
         const double limit = i < 5 ? 80 : 12;
-        worst = std::max(worst, std::abs(tau[i] - std::clamp(wanted[i], -limit, limit)));
+        worst = std::max(worst, std::abs(tau[i] - std::clamp(substep.torques[i], -limit, limit)));
       }
       ++compared;
     }
@@ -136,6 +152,8 @@ Result<Followed> follow(Imported& imported, const Records& records, const Record
   PROBE_ASSIGN(const std::size_t q_at, table.column("q1"));
   PROBE_ASSIGN(const std::size_t finger_at, table.column("f1"));
   PROBE_ASSIGN(const std::size_t tool_at, table.column("tcp_x"));
+  if (std::max({action_at + 7, q_at + kArm, finger_at + 2, tool_at + 3}) > table.names.size())
+    return Failure{Fault::kUsage, "the table's columns are in another order", file};
   PROBE_TRY(stage->reset(0));
   const int waited = static_cast<int>(plan->tasks()[stage->task()].idle);
   Followed followed;
@@ -162,9 +180,8 @@ Result<Followed> follow(Imported& imported, const Records& records, const Record
   // Joints of fixtures where the record ends.
   const std::string end = "reference/" + task.key() + "_state.json";
   if (!records.has(end)) return followed;
-  PROBE_ASSIGN(const std::string states, records.text(end));
-  const Json said = Json::parse(states);
-  const auto last = said["state_t70"].get<std::vector<double>>();
+  PROBE_ASSIGN(const Json said, records.json(end));
+  PROBE_ASSIGN(const auto last, numbers(said, "state_t70", 0, end));
   std::size_t at = 10 + 7 * task.said["objects"].size();
   const auto joints = stage->q().subspan(kArm + 2);
   for (std::size_t i = 0; i < joints.size() && at + i < last.size(); ++i, ++followed.fixture_joints)

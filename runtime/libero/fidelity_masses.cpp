@@ -17,6 +17,39 @@ Mat3 inertia_of(const Json& body) {
   return turn * Vec3(moments.data()).asDiagonal() * turn.transpose();
 }
 
+// That the classes of all recorded tasks are there, with all that is compared.
+Status check_classes(const Json& classes, const Records& records) {
+  const std::string file = "libero_object_classes.json";
+  for (const RecordedTask& task : records.tasks()) {
+    for (const char* const things : {"objects", "fixtures"}) {
+      for (const auto& [name, said] : task.said[things].items()) {
+        const std::string cls = said["cls"].text();
+        PROBE_ASSIGN(const Json* entry, member(classes, cls, JsonKind::kObject, file));
+        const std::string where = file + ", " + cls;
+        PROBE_ASSIGN(const Json* compiled,
+                     member(*entry, "compiled_bodies", JsonKind::kArray, where));
+        if (compiled->size() > 1) {
+          PROBE_ASSIGN(const Json* bodies, member(*entry, "bodies", JsonKind::kArray, where));
+          if (bodies->size() != compiled->size())
+            return Failure{Fault::kUsage, "as many bodies as were compiled are expected", where};
+          for (const Json& body : *bodies) {
+            if (!body.is_object() || body.find("pos") == nullptr)
+              return Failure{Fault::kUsage, "a body has no `pos`", where};
+          }
+        }
+        for (const Json& body : *compiled) {
+          PROBE_TRY(member(body, "name", JsonKind::kText, where));
+          PROBE_TRY(member(body, "mass", JsonKind::kNumber, where));
+          PROBE_TRY(numbers(body, "ipos", 3, where));
+          PROBE_TRY(numbers(body, "iquat", 4, where));
+          PROBE_TRY(numbers(body, "inertia", 3, where));
+        }
+      }
+    }
+  }
+  return {};
+}
+
 // Of a body in the one that carries it, as the model writes it: it is not turned there.
 Vec3 place_of(const Json& body) {
   Vec3 place = Vec3::Zero();
@@ -37,8 +70,8 @@ Result<FidelityRow> masses_row(Imported& imported, const Records& records) {
                   "what the physics weighs against the models as MuJoCo compiled them",
                   Held::kNo,
                   {}};
-  PROBE_ASSIGN(const std::string text, records.text("libero_object_classes.json"));
-  const Json classes = Json::parse(text);
+  PROBE_ASSIGN(const Json classes, records.json("libero_object_classes.json"));
+  PROBE_TRY(check_classes(classes, records));
   double mass = 0, centre = 0, inertia = 0;
   std::set<std::string> seen;
   for (const RecordedTask& task : records.tasks()) {

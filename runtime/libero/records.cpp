@@ -23,12 +23,105 @@ std::string RecordedTask::name() const {
   return name;
 }
 
+namespace {
+
+bool is_of(const Json& json, JsonKind kind) {
+  switch (kind) {
+    case JsonKind::kObject:
+      return json.is_object();
+    case JsonKind::kArray:
+      return json.is_array();
+    case JsonKind::kText:
+      return json.is_string();
+    case JsonKind::kNumber:
+      return json.is_number();
+  }
+  return false;
+}
+
+std::string_view word_of(JsonKind kind) {
+  switch (kind) {
+    case JsonKind::kObject:
+      return "an object";
+    case JsonKind::kArray:
+      return "an array";
+    case JsonKind::kText:
+      return "a text";
+    case JsonKind::kNumber:
+      return "a number";
+  }
+  return "";
+}
+
+// That everything is there that rows ask of a task's entry.
+Status check_task(const Json& said, const std::string& where) {
+  for (const char* key : {"suite", "file", "language"})
+    PROBE_TRY(member(said, key, JsonKind::kText, where));
+  for (const char* key : {"index", "horizon"})
+    PROBE_TRY(member(said, key, JsonKind::kNumber, where));
+  PROBE_TRY(member(said, "goal", JsonKind::kArray, where));
+  for (const char* key : {"objects", "fixtures"}) {
+    PROBE_ASSIGN(const Json* things, member(said, key, JsonKind::kObject, where));
+    for (const auto& [name, thing] : things->items()) {
+      PROBE_TRY(member(thing, "cls", JsonKind::kText, where + ", " + name));
+      if (std::string_view(key) == "fixtures")
+        PROBE_TRY(member(thing, "joints", JsonKind::kArray, where + ", " + name));
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<const Json*> member(const Json& of, const std::string& key, JsonKind kind,
+                           const std::string& where) {
+  const Json* const found = of.is_object() ? of.find(key) : nullptr;
+  if (found == nullptr) return Failure{Fault::kUsage, "there is no `" + key + "`", where};
+  if (!is_of(*found, kind))
+    return Failure{Fault::kUsage, fmt::format("`{}` is not {}", key, word_of(kind)), where};
+  return found;
+}
+
+Result<std::vector<double>> numbers(const Json& of, const std::string& key, std::size_t count,
+                                    const std::string& where) {
+  PROBE_ASSIGN(const Json* all, member(of, key, JsonKind::kArray, where));
+  std::vector<double> out;
+  for (const Json& number : *all) {
+    // A matrix may be written row by row.
+    if (number.is_array()) {
+      for (const Json& inner : number) {
+        if (!inner.is_number())
+          return Failure{Fault::kUsage, "`" + key + "` has what is no number", where};
+        out.push_back(inner.get<double>());
+      }
+      continue;
+    }
+    if (!number.is_number())
+      return Failure{Fault::kUsage, "`" + key + "` has what is no number", where};
+    out.push_back(number.get<double>());
+  }
+  if (count != 0 && out.size() != count)
+    return Failure{Fault::kUsage,
+                   fmt::format("`{}` has {} numbers, not {}", key, out.size(), count), where};
+  return out;
+}
+
+Result<Json> Records::json(const std::string& file) const {
+  PROBE_ASSIGN(const std::string bytes, text(file));
+  Json parsed = Json::parse(bytes);
+  if (!parsed.is_object() && !parsed.is_array())
+    return Failure{Fault::kUsage, "this is no JSON", file};
+  return parsed;
+}
+
 Result<Records> Records::open(const std::string& folder) {
+  const std::string file = "libero_tasks.json";
   Records records;
   records.folder_ = folder;
-  PROBE_ASSIGN(const std::string text, records.text("libero_tasks.json"));
-  const Json all = Json::parse(text);
-  for (const Json& said : all["tasks"]) {
+  PROBE_ASSIGN(const Json all, records.json(file));
+  PROBE_ASSIGN(const Json* tasks, member(all, "tasks", JsonKind::kArray, file));
+  for (const Json& said : *tasks) {
+    PROBE_TRY(check_task(said, fmt::format("{}, task {}", file, records.tasks_.size())));
     RecordedTask& task = records.tasks_.emplace_back();
     task.suite = said["suite"].text();
     task.stem = said["file"].text();

@@ -12,6 +12,14 @@
 
 namespace probe::libero {
 
+enum class JsonKind { kObject, kArray, kText, kNumber };
+// A member of an object. Fails (kUsage) naming what is not there, or is of another kind.
+Result<const Json*> member(const Json& of, const std::string& key, JsonKind kind,
+                           const std::string& where);
+// The same of finite numbers, so many of them (0: as many as there are).
+Result<std::vector<double>> numbers(const Json& of, const std::string& key, std::size_t count,
+                                    const std::string& where);
+
 struct RecordedTask {
   std::string suite, stem;   // "libero_goal", "open_the_middle_drawer_of_the_cabinet"
   std::size_t index = 0;     // within its suite
@@ -30,13 +38,15 @@ struct RecordedState {
 
 class Records {
  public:
-  // Fails (kUsage) where the folder has no libero_tasks.json.
+  // Fails (kUsage) where the folder has no libero_tasks.json, or one that lacks what is asked of
+  // it.
   static Result<Records> open(const std::string& folder);
 
   const std::string& folder() const { return folder_; }
   const std::vector<RecordedTask>& tasks() const { return tasks_; }
   bool has(const std::string& file) const;
   Result<std::string> text(const std::string& file) const;
+  Result<Json> json(const std::string& file) const;
 
   // libero_settled.npz: by start; empty where the archive has none of this task.
   Result<std::vector<RecordedState>> settled(const RecordedTask& task) const;

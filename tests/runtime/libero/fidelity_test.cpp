@@ -149,6 +149,30 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
   REQUIRE(folder.import().ok());
   FidelityOptions options = small_options(folder);
   CHECK(measure_fidelity(options).failure().where.ends_with("records/libero_tasks.json"));
+  const auto refused = [&](const std::string& file, const std::string& text) {
+    folder.write("records/" + file, text);
+    const auto rows = measure_fidelity(options);
+    return rows.ok() ? std::string() : to_text(rows.failure());
+  };
+  const std::string tasks = "libero_tasks.json", classes = "libero_object_classes.json";
+  CHECK(refused(tasks, "{\"tasks\":[{\"suite\":1") == "libero_tasks.json: this is no JSON");
+  CHECK(refused(tasks, "{\"tusks\":3}") == "libero_tasks.json: there is no `tasks`");
+  CHECK(refused(tasks, "{\"tasks\":[{\"suite\":1}]}") ==
+        "libero_tasks.json, task 0: `suite` is not a text");
+  REQUIRE(refused(tasks, tasks_json("put a cup in the drawer and close it")).empty());
+  CHECK(refused(classes, "{}") == "libero_object_classes.json: there is no `Cup`");
+  std::string text = classes_json(0.0288);
+  text.replace(text.find("\"ipos\":[0,0,"), 12, "\"ipos\":[0,");
+  CHECK(refused(classes, text) == "libero_object_classes.json, Cup: `ipos` has 2 numbers, not 3");
+  REQUIRE(refused(classes, classes_json(0.0288)).empty());
+  CHECK(refused("libero_settled.npz", test::stored_zip("libero_90_00.npy", test::npy({{1, 2}})))
+            .find("its rows are no states of this task") != std::string::npos);
+  fs::remove(folder.root / "records/libero_settled.npz");
+  folder.write("records/reference/libero_90_00_osc.csv", "step,a0\n1,2,3\n");
+  CHECK(refused("reference/osc_unit_libero_90_00.json", "[{\"J\":[1]}]") ==
+        "reference/osc_unit_libero_90_00.json: there is no `q`");
+  CHECK(refused("reference/osc_unit_libero_90_00.json", "[]") ==
+        "reference/libero_90_00_osc.csv:2: expected 2 cells, found 3");
   options.records.clear();
   options.original = (folder.root / "assets").string();
   CHECK(measure_fidelity(options).failure().message ==
