@@ -25,6 +25,7 @@ namespace {
 constexpr double kHandRoom =
     0.05;                  // m that the fingers may be wide, and a part go between two looks
 constexpr int kLooks = 8;  // at a joint's way
+constexpr double kFarther = 0.02;  // of a joint's way: less is open to its end
 
 class Expert final : public policy::Policy {
  public:
@@ -51,6 +52,7 @@ class Expert final : public policy::Policy {
     solution_.clear();
     skill_ = 0;
     skill_begun_ = false;
+    has_opened_ = false;
     hand_ = {};
     lack_.clear();
     return {};
@@ -254,7 +256,10 @@ class Expert final : public policy::Policy {
           return *action;
         if (!joint_.reached()) note(joint_.lack());
       } else {
-        if (is_new) begin_object_skill(means.view, scene, skill, observation);
+        if (is_new && !begin_object_skill(means.view, scene, skill, observation)) {
+          skill_begun_ = false;
+          continue;
+        }
         const policy::Action action = hand_.act(is_new ? seen(observation) : scene, means);
         if (!hand_.is_over() || skill_ + 1 >= solution_.size()) return action;
         note_hand();
@@ -265,7 +270,8 @@ class Expert final : public policy::Policy {
     return servo_.hold(arm_of(seen(observation)), kOpenGripper);
   }
 
-  void begin_object_skill(const policy::Privileged& view, const Scene& scene,
+  // False: another skill was put before it and comes first.
+  bool begin_object_skill(const policy::Privileged& view, const Scene& scene,
                           const policy::Skill& skill, const policy::Observation& observation) {
     using Kind = policy::Skill::Kind;
     Errand errand;
@@ -280,10 +286,30 @@ class Expert final : public policy::Policy {
       solution_[skill_].region.reset();
       return begin_object_skill(view, seen(observation), solution_[skill_], observation);
     }
+    if (needs_spot && errand.spots.empty() && opens_farther(view, skill)) return false;
     errand.may_shove = errand.spots.empty();
     hand_.begin(errand, view, scene);
     if (needs_spot && errand.spots.empty())
       hand_.rest("there is no spot with room for it that the arm reaches");
+    return true;
+  }
+
+  // What has no room in a drawer that is nearly open may have in one that is open to its end.
+  bool opens_farther(const policy::Privileged& view, const policy::Skill& put) {
+    if (put.to_fixture < 0 || has_opened_) return false;
+    const auto& joint = view.fixtures[static_cast<std::size_t>(put.to_fixture)].joint;
+    if (!joint || joint->endless) return false;
+    const double far = joint->closed == joint->upper ? joint->lower : joint->upper;
+    const double left = std::abs(far - joint->position);
+    if (left < kFarther * std::abs(far - joint->closed)) return false;
+    has_opened_ = true;
+    policy::Skill open;
+    open.kind = policy::Skill::Kind::kOpen;
+    open.fixture = put.to_fixture;
+    open.fully = true;
+    open.name = put.name;
+    solution_.insert(solution_.begin() + static_cast<std::ptrdiff_t>(skill_), std::move(open));
+    return true;
   }
 
   Status check(const policy::Observation& observation) const {
@@ -336,6 +362,7 @@ class Expert final : public policy::Policy {
   std::vector<policy::Skill> solution_;        // none: the usual pick and place
   std::size_t skill_ = 0;                      // of these
   bool skill_begun_ = false;
+  bool has_opened_ = false;  // farther, for a put
   JointSkill joint_;
   PickPlace hand_;
   std::string usual_;  // the usual pick and place, as a skill is called

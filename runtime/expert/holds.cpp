@@ -20,10 +20,14 @@ constexpr double kDeepest = 0.020;       // m of a handle that the tool centre p
 constexpr double kTipUnder = 0.012;      // m of the fingertips behind the point that they push at
 // Cosines of 72 and 59 degrees: closing lines nearly across the way down, and where there are none.
 constexpr double kUpright = 0.3, kLessUpright = 0.52;
+constexpr double kStraight = -0.999;       // of the way down: fingers are upright
+constexpr std::array kLeant = {0.5, 1.0};  // tangents of how far the hand leans back from a face
 constexpr double kAgainst = 0.75;  // cosine between a face's normal and the way it is pushed
 constexpr double kOverhang = -0.3, kMostOverhang = -0.7;  // of a face's normal, upwards
 constexpr double kEdge = 0.005;                           // m: what is nearer is at the edge
 constexpr double kNearBy = 0.6, kFarCost = 40;  // m from the base; cost of a square metre more
+constexpr double kLevelFace = 0.1;              // of a face's normal, upwards: it stands upright
+constexpr double kLeantCost = 0.5;              // an upright hand is stiffer
 constexpr double kKnob = 0.03;  // m from the axis: what is nearer is turned about itself
 constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half width and height
 constexpr int kLooks = 5;                                      // at the way of the part
@@ -256,8 +260,17 @@ class Search {
       hold.open = 0;
       hold.turned = frame_of(-Vec3::UnitZ(), closing);
       hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
-      add(hold, (p_.grasps ? 1.5 : 0) + turn_cost(hold.turned, -Vec3::UnitZ()) + lever_cost(at) +
-                    2 * (1 + out.dot(way)));
+      const double cost = (p_.grasps ? 1.5 : 0) + lever_cost(at) + 2 * (1 + out.dot(way));
+      add(hold, cost + turn_cost(hold.turned, -Vec3::UnitZ()));
+      // Where what is above the face leaves upright hands no room.
+      if (!p_.joint.slides || std::abs(out.z()) > kLevelFace) continue;
+      for (const double leant : kLeant) {
+        const Vec3 down = (-leant * flat - Vec3::UnitZ()).normalized();
+        const Vec3 across = (closing - closing.dot(down) * down).normalized();
+        hold.turned = frame_of(down, across);
+        hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
+        add(hold, cost + kLeantCost + turn_cost(hold.turned, down));
+      }
     }
   }
 
@@ -289,9 +302,15 @@ Pose tool_at(const Hold& hold, const Pose& part, const robot::HandShape& hand, d
   const Vec3 flat(out.x(), out.y(), 0);
   const double across = flat.norm(), up = std::max(out.z(), 0.0);
   const Vec3 own = hold.turned.conjugate() * flat;
+  const Vec3 down = hold.turned * Vec3::UnitX();
   // Half of the closed fingers towards the face; under a face that looks up they end at it.
   const double thick = std::abs(own.y()) > std::abs(own.z()) ? closed_half(hand) : hand.finger_half;
   Vec3 tool = at + gap * out;
+  // Leant back from the face, their ends meet it with an edge.
+  if (down.z() > kStraight) {
+    const Vec3 off = (out - out.dot(down) * down).normalized();
+    return {tool + thick * off - hand.tip_below * down, hold.turned};
+  }
   if (across > 1e-6) tool += thick * flat / std::max({across, up, 1e-6});
   const double under = across > up ? kTipUnder * (across - up) / across : 0;
   tool.z() += hand.tip_below - under;

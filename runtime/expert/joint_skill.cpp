@@ -15,11 +15,14 @@ namespace {
 
 constexpr int kMostHoldTries = 4, kMostParts = 8, kMostHomes = 2;
 constexpr std::size_t kMostHolds = 40;  // put to inverse kinematics
-constexpr double kOpenAim = 0.97, kOpenEnough = 0.93, kOpenLeast = 0.85;  // of the way
-constexpr double kClosedEnough = 0.01, kClosedLeast = 0.03;               // of the way
-constexpr double kBeyond = 0.03, kTurnSlack = 0.01;                       // rad, of a turn
-constexpr double kPressEnough = 0.9, kPressLeast = 0.6;                   // of the way
-constexpr double kFromAbove = 0.9;                                        // cosine of 26 degrees
+struct OpenShares {
+  double aim, enough, least;  // of the way
+};
+constexpr OpenShares kOpen{0.97, 0.93, 0.85}, kFullyOpen{1, 0.99, 0.96};
+constexpr double kClosedEnough = 0.01, kClosedLeast = 0.03;  // of the way
+constexpr double kBeyond = 0.03, kTurnSlack = 0.01;          // rad, of a turn
+constexpr double kPressEnough = 0.9, kPressLeast = 0.6;      // of the way
+constexpr double kFromAbove = 0.9;                           // cosine of 26 degrees
 constexpr double kBefore = 0.09;     // m from the hold, where the hand comes from
 constexpr double kOff = 0.015;       // m off a face before it is pushed
 constexpr double kAhead = 0.040;     // m (of the arc) that the tool is led ahead of the part
@@ -58,8 +61,9 @@ JointSkill::Goal JointSkill::goal_of(const policy::Skill& skill, const PartJoint
   const double way = far - joint.closed;  // signed
   Goal goal;
   if (skill.kind == Kind::kOpen) {
-    goal = {joint.closed + kOpenAim * way, joint.closed + kOpenEnough * way,
-            joint.closed + kOpenLeast * way, way > 0};
+    const OpenShares shares = skill.fully ? kFullyOpen : kOpen;
+    goal = {joint.closed + shares.aim * way, joint.closed + shares.enough * way,
+            joint.closed + shares.least * way, way > 0};
   } else if (skill.kind == Kind::kClose) {
     goal = {joint.closed, joint.closed + kClosedEnough * way, joint.closed + kClosedLeast * way,
             way < 0};
@@ -283,7 +287,8 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
       way_back(view, arm, reach);
       return enter(Phase::kBack);
     case Phase::kBack:
-      if (!is_near(arm.tcp, way_[next_], 0.025, 0.2) && steps_ < (next_ < 2 ? 12 : 25)) return;
+      if (!is_near(arm.tcp, way_[next_], 0.025, 0.2) && steps_ < (next_ < near_legs() ? 12 : 25))
+        return;
       steps_ = 0;
       if (++next_ < way_.size()) return;
       // A button comes back.
@@ -330,7 +335,7 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
     case Phase::kLetGo:
       return servo.settle(arm.tcp, arm, open);
     case Phase::kBack:
-      return servo.toward(way_[next_], arm, open, next_ < 2 ? kNearHold : kFarPace);
+      return servo.toward(way_[next_], arm, open, next_ < near_legs() ? kNearHold : kFarPace);
     case Phase::kPlan:
     case Phase::kHome:
     case Phase::kOver:

@@ -54,6 +54,8 @@ class JointSkill {
   policy::Action command(const policy::Privileged& view, const Arm& arm, Servo& servo,
                          const Reach& reach);
   void advance_move(double position);
+  // Legs of the way back that are near the part.
+  std::size_t near_legs() const { return hold_->pushes() ? 2 : 1; }
   void try_again(double position);
 
   policy::Skill skill_;

@@ -22,6 +22,9 @@ constexpr const char* kLost = "it slipped in the hand";
 constexpr double kThin = 0.015;       // m high
 constexpr double kFlat = 0.030;       // m high: what is dragged
 constexpr double kLies = 0.010;       // m from the surface
+constexpr double kDeep = 0.09;        // m: walls as high are not passed aslant
+constexpr double kAroundPlace = 0.04;   // m
+constexpr double kOverWalls = 0.015;  // m
 constexpr int kLongestDrag = 40;      // steps
 constexpr int kLongestShove = 8;      // steps
 constexpr double kLift = 0.12;        // m, of what is picked up
@@ -267,10 +270,29 @@ void PickPlace::begin_transport(Scene s, const Means& means) {
   if (!place) return start_over(means, "the arm follows no way to a place for it");
   place_ = place->tcp;
   let_go_ = place->openness;
-  path_ = plan_transport(s, means.reach, place_, means.recent, 1 + kCareful * tries_);
+  Pose end = place_;
+  if (on_mark) end.position.z() += depth_of(s);
+  path_ = plan_transport(s, means.reach, end, means.recent, 1 + kCareful * tries_);
   path_step_ = 0;
   if (!path_) return start_over(means, "the arm follows no way to a place for it");
   enter(Phase::kTransport);
+}
+
+// How much higher than its place the source passes what stands around a deep one; 0 of a place that
+// is not deep, or of an arm with time to go over everything.
+double PickPlace::depth_of(const Scene& s) {
+  if (!s.low_ways) return 0;
+  Outline there = s.source.whole;
+  for (Vec2& p : there) p += s.target.center - s.source.center;
+  double top = s.target.top;
+  for (const Footprint* other : others_of(s, false)) {
+    for (std::size_t i = 0; i < other->parts.size(); ++i) {
+      if (other->parts[i].size() < 3 || other->part_tops[i] <= top) continue;
+      if (separation(there, other->parts[i]) < kAroundPlace) top = other->part_tops[i];
+    }
+  }
+  const double depth = top - s.target.top;
+  return depth > kDeep ? depth + kOverWalls : 0;
 }
 
 bool PickPlace::lifted_enough(const Scene& s, double rise) const {

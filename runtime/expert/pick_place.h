@@ -84,6 +84,7 @@ class PickPlace {
   void advance_close(const Scene& s, const Means& means);
   void begin_lift();
   bool is_dragged(const Scene& s) const;
+  static double depth_of(const Scene& s);
   void begin_drag(const Scene& s);
   void choose_spot(const Scene& s, const Means& means);
   void begin_transport(Scene s, const Means& means);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "runtime/base/trig.h"
 #include "runtime/expert/path_planner.h"
+#include "runtime/expert/solid_top.h"
 
 namespace probe::expert {
 namespace {
@@ -30,8 +32,20 @@ constexpr std::array kApart = {0.015, 0.03, 0.05};      // m between outlines' c
 constexpr std::size_t kMostSpots = 20;                  // put to inverse kinematics
 constexpr std::size_t kGiven = 8;                       // of those that are reached
 constexpr double kHalfOut = 0.7;  // of half a region: where what comes first leaves room
-constexpr double kMark = 0.01;    // m, half of the square that stands for the spot
-constexpr double kProud = 0.03;   // m that what carries may stand out of the region it is on
+constexpr std::array kFiner = {0.008, 0.004, 0.002, 0.001};  // m: steps to more room
+constexpr std::size_t kFined = 6;                            // spots that are moved so
+constexpr double kMostSlope = 0.08;  // m over a region, along its own normal: still on it
+constexpr double kSlopeStep = 0.01;  // m
+constexpr double kInRegion = 0.8;    // of half of it
+constexpr double kSlopeCost = 10;    // of a m farther in
+constexpr double kMark = 0.01;       // m, half of the square that stands for the spot
+constexpr double kProud = 0.03;      // m that what carries may stand out of the region it is on
+
+// A place on a slope.
+struct Slope {
+  Vec3 at;
+  double cost = 0;
+};
 
 // A place that is looked at.
 struct Wanted {
@@ -108,6 +122,36 @@ class Spots {
     return least;
   }
 
+  // On parts of a fixture that lie aslant: where the source, upright as it is, first touches them,
+  // over the region along the region's own normal.
+  std::vector<Slope> slopes() const {
+    std::vector<Slope> out;
+    if (skill_.to_fixture < 0 || !skill_.region || !is_on()) return out;
+    const policy::Skill::Box& box = *skill_.region;
+    const Pose pose = owner() * box.turned;
+    const Vec3 middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+    if ((pose.rotation * Vec3::UnitZ()).z() < 0) return out;
+    std::vector<std::vector<Vec3>> solids =
+        view_.fixtures[static_cast<std::size_t>(skill_.to_fixture)].parts;
+    for (std::vector<Vec3>& solid : solids) {
+      for (Vec3& v : solid) v = owner().apply(v);
+    }
+    for (int i = 0; i < kGrid; ++i) {
+      const double u = kInRegion * (2.0 * i / (kGrid - 1) - 1);
+      for (double up = 0; up < kMostSlope; up += kSlopeStep) {
+        const Vec2 at = pose.apply(middle + Vec3(u * half.x(), 0, half.z() + up)).head<2>();
+        const std::optional<double> height = first_touch(solids, at);
+        if (!height) continue;
+        const Vec3 there = pose.inverse().apply(Vec3(at.x(), at.y(), *height)) - middle;
+        if (std::abs(there.x()) > kInRegion * half.x() || there.z() < half.z() + kSlopeStep ||
+            std::abs(there.y()) > kInRegion * half.y() || there.z() > kMostSlope)
+          continue;
+        out.push_back({{at.x(), at.y(), *height}, 4 * std::abs(u) * half.x() + kSlopeCost * up});
+      }
+    }
+    return out;
+  }
+
   double share_supported(const Vec2& at, double height, double top,
                          const Eigen::Matrix2d& turn) const {
     int held = 0;
@@ -121,6 +165,22 @@ class Spots {
   }
 
  private:
+  // The height at which the source, let down over `at`, meets the first of the solids.
+  std::optional<double> first_touch(const std::vector<std::vector<Vec3>>& solids,
+                                    const Vec2& at) const {
+    std::optional<double> highest;
+    for (const Vec2& p : scene_.source.whole) {
+      for (const double share : {0.0, 0.5, 1.0}) {
+        const Vec2 under = at + share * (p - scene_.source.center);
+        for (const std::vector<Vec3>& solid : solids) {
+          const std::optional<double> top = top_over(solid, under);
+          if (top) highest = std::max(highest.value_or(*top), *top);
+        }
+      }
+    }
+    return highest;
+  }
+
   bool is_on() const { return skill_.place == policy::Skill::Place::kOn; }
 
   std::vector<Wanted> grid(const policy::Skill::Box& box, const Pose& owner, double proud) const {
@@ -217,6 +277,58 @@ class Spots {
   std::optional<Footprint> carrier_;  // the object that it is put on or in
 };
 
+// A spot that is no spot of the grid: where there is just room enough.
+struct Tight {
+  Vec3 at;
+  double room = 0, away = 0;
+};
+
+// The spots of `all` that lack least room, moved to where there is more, step by finer step.
+using Roomiest =
+    std::function<void(const Vec2& at, double height, double* room, double* share, double top)>;
+
+std::vector<Tight> tightest(const Spots& spots, const std::vector<Wanted>& all,
+                            const Roomiest& roomiest) {
+  constexpr double kNone = -1;
+  const auto room_at = [&](const Wanted& wanted, const Vec2& at, double* height) {
+    *height = spots.support(at, wanted.top);
+    double room = kNone;
+    if (*height >= wanted.at.z() - 0.05) roomiest(at, *height, &room, nullptr, wanted.top);
+    return room;
+  };
+  struct From {
+    const Wanted* wanted;
+    double room;
+  };
+  std::vector<From> from;
+  for (const Wanted& wanted : all) {
+    double height = 0;
+    const double room = room_at(wanted, wanted.at.head<2>(), &height);
+    if (room > kNone) from.push_back({&wanted, room});
+  }
+  std::stable_sort(from.begin(), from.end(),
+                   [](const From& a, const From& b) { return a.room > b.room; });
+  from.resize(std::min(from.size(), kFined));
+  std::vector<Tight> out;
+  for (const From& one : from) {
+    Vec2 at = one.wanted->at.head<2>();
+    double height = 0, room = room_at(*one.wanted, at, &height);
+    for (const double step : kFiner) {
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (const Vec2& way : {Vec2(step, 0), Vec2(-step, 0), Vec2(0, step), Vec2(0, -step)}) {
+          double there = 0;
+          const double here = room_at(*one.wanted, at + way, &there);
+          if (here < room + 1e-6 || std::abs(there - height) > kLevel) continue;
+          at += way, room = here, height = there, moved = true;
+        }
+      }
+    }
+    if (room >= kTightest) out.push_back({{at.x(), at.y(), height}, room, one.wanted->away});
+  }
+  return out;
+}
+
 }  // namespace
 
 bool goes_to_spot(const policy::Skill& skill) {
@@ -235,37 +347,53 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
   const Obstacles obstacles = obstacles_of(scene, true);
   const double yaw_now = yaw_of(scene.tcp.rotation);
   std::vector<Found> found;
-  for (const Wanted& wanted : spots.wanted()) {
-    const Vec2 at = wanted.at.head<2>();
-    const double height = spots.support(at, wanted.top);
-    // Under the region there may be its floor, or none of it.
-    if (height < wanted.at.z() - 0.05) continue;
-    double room = 0, share = 0;
+  // The turn of the source with most room there.
+  const auto roomiest = [&](const Vec2& at, double height, double* room, double* share,
+                            double top) {
     std::vector<double> turns;
     for (const double turned : kTurned) turns.push_back(turned * std::numbers::pi);
     const std::vector<double> square =
         turns_square_to(scene.source.whole, others_of(scene, true), at, kWallsNear);
-    turns.insert(turns.end(), square.begin(), square.end());
+    for (const double turn : square) turns.push_back(turn);
     for (const double turned : turns) {
       const SinCos t = portable_sincos(turned);
       Eigen::Matrix2d turn;
       turn << t.cos, -t.sin, t.sin, t.cos;
       const double here = spots.room(at, height, turn);
-      if (here < room + 1e-9) continue;
-      room = here;
-      share = spots.share_supported(at, height, wanted.top, turn);
+      if (here < *room + 1e-9) continue;
+      *room = here;
+      if (share != nullptr) *share = spots.share_supported(at, height, top, turn);
     }
-    if (room < kTightest) continue;
+  };
+  const auto add = [&](const Vec3& at, double room, double more) {
     double hand = -1;
     for (const double turn : {0.0, 0.5}) {
-      const Pose there = top_down({at.x(), at.y(), height + scene.hand.tip_below + kHandAbove},
+      const Pose there = top_down({at.x(), at.y(), at.z() + scene.hand.tip_below + kHandAbove},
                                   yaw_now + turn * std::numbers::pi);
       hand = std::max(hand, least_clearance(there, balls, obstacles, kHandRoom));
     }
-    const double stretched = std::max(0.0, at.norm() - kNearby);
-    found.push_back({{at.x(), at.y(), height},
-                     30 * (kRoomiest - room) + 60 * (kHandRoom - hand) + 4 * wanted.away +
-                         3 * (1 - share) + kStretchCost * stretched});
+    const double stretched = std::max(0.0, at.head<2>().norm() - kNearby);
+    found.push_back(
+        {at, 30 * (kRoomiest - room) + 60 * (kHandRoom - hand) + more + kStretchCost * stretched});
+  };
+  const std::vector<Wanted> all = spots.wanted();
+  for (const Wanted& wanted : all) {
+    const Vec2 at = wanted.at.head<2>();
+    const double height = spots.support(at, wanted.top);
+    // Under the region there may be its floor, or none of it.
+    if (height < wanted.at.z() - 0.05) continue;
+    double room = 0, share = 0;
+    roomiest(at, height, &room, &share, wanted.top);
+    if (room < kTightest) continue;
+    add({at.x(), at.y(), height}, room, 4 * wanted.away + 3 * (1 - share));
+  }
+  // Between spots that are looked at there may be one with just room enough.
+  if (found.empty()) {
+    for (const Tight& tight : tightest(spots, all, roomiest))
+      add(tight.at, tight.room, 4 * tight.away);
+  }
+  if (found.empty()) {
+    for (const Slope& slope : spots.slopes()) add(slope.at, kTightest, slope.cost);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.cost < b.cost; });

@@ -67,9 +67,14 @@ double Surroundings::clearance(const Pose& tool, std::span<const Ball> balls, do
   double radius = 0;
   for (std::size_t i = 0; i < centers.size(); ++i)
     radius = std::max(radius, (centers[i] - middle).norm() + balls[i].radius);
+  const auto part = std::ranges::find(bodies, moved.fixture, &Body::fixture);
+  const auto now = [&](const Body& body) {
+    if (moved.fixture < 0 || part == bodies.end()) return body.pose;
+    if (body.fixture == moved.fixture) return moved.at;
+    return body.carrier == moved.fixture ? moved.at * part->pose.inverse() * body.pose : body.pose;
+  };
   for (const Body& body : bodies) {
-    const bool is_moved = body.fixture >= 0 && body.fixture == moved.fixture;
-    const Pose into = (is_moved ? moved.at : body.pose).inverse();
+    const Pose into = now(body).inverse();
     const Vec3 near = into.apply(middle);
     for (std::size_t s = 0; s < body.solids.size(); ++s) {
       const bool is_out = body.fixture >= 0 && body.fixture == without.fixture &&
@@ -82,12 +87,38 @@ double Surroundings::clearance(const Pose& tool, std::span<const Ball> balls, do
   return least;
 }
 
+namespace {
+
+// The part with a joint, of `parts`, within whose sides, and not below which, an object's middle
+// is.
+int carrier_of(std::span<const Surroundings::Body> parts, const policy::Privileged& view,
+               const Surroundings::Body& object) {
+  Vec3 middle = Vec3::Zero();
+  for (const Solid& solid : object.solids)
+    middle += object.pose.apply(solid.center()) / static_cast<double>(object.solids.size());
+  for (const Surroundings::Body& part : parts) {
+    const auto& joint = view.fixtures[static_cast<std::size_t>(part.fixture)].joint;
+    if (!joint || object.solids.empty() || part.solids.empty()) continue;
+    Vec3 low = part.solids.front().low(), high = part.solids.front().high();
+    for (const Solid& solid : part.solids)
+      low = low.cwiseMin(solid.low()), high = high.cwiseMax(solid.high());
+    const Vec3 own = part.pose.inverse().apply(middle);
+    if ((own.array() > low.array()).all() && (own.array() < high.array()).all())
+      return part.fixture;
+  }
+  return -1;
+}
+
+}  // namespace
+
 Surroundings surroundings_of(const policy::Privileged& view) {
   Surroundings out;
   const Pose to_base = view.base.inverse();
   const auto add = [&](const std::vector<std::vector<Vec3>>& parts, const Pose& pose, int fixture) {
     Surroundings::Body body{to_base * pose, {}, fixture};
     for (const std::vector<Vec3>& part : parts) body.solids.push_back(Solid::around(part));
+    if (fixture < 0)
+      body.carrier = carrier_of(std::span(out.bodies).first(view.fixtures.size()), view, body);
     out.bodies.push_back(std::move(body));
   };
   for (std::size_t i = 0; i < view.fixtures.size(); ++i)

@@ -48,12 +48,13 @@ struct Surroundings {
     Pose pose;
     std::vector<Solid> solids;
     int fixture = -1;  // of the privileged view; -1 for an object
+    int carrier = -1;  // the fixture's part that an object stands in and goes with; -1 for none
   };
   std::vector<Body> bodies;
   double floor = 0;  // m, height of the surface
 
   // The least distance of balls in the tool's frame from all else and the floor, as far as it is
-  // below `beyond`. `moved` stands where `at` says instead.
+  // below `beyond`. `moved` stands where `at` says instead, and what stands in it goes along.
   double clearance(const Pose& tool, std::span<const Ball> balls, double beyond,
                    const MovedPart& moved = {}, const LeftOut& without = {}) const;
 };

@@ -103,6 +103,7 @@ struct Skill {
   };
   std::optional<Box> region;
   bool shares = false;  // `region` is the expert's: beside others on or in `to_object`
+  bool fully = false;   // the expert's, of an opening: to its end
   // Of a turn, rad: from where it is closed, or from where it is.
   double amount = 0;
   bool by = false;
