@@ -201,7 +201,9 @@ void JointSkill::way_back(const policy::Privileged& view, const Arm& arm, const 
   way_.push_back(away);
   if ((arm.tcp.rotation * Vec3::UnitX()).z() < -kFromAbove) return;
   const Surroundings around = surroundings_of(view);
-  const std::vector<Ball> balls = balls_of(*hold_, reach.hand().shape).all();
+  // Off the part they open on the way, for what comes next.
+  const robot::HandShape& hand = reach.hand().shape;
+  const std::vector<Ball> balls = hand_balls(hand, hand.opening_half).all();
   if (const auto home = free_way(around, away, ready_, balls))
     way_.insert(way_.end(), home->begin(), home->end());
 }
@@ -335,7 +337,8 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
     case Phase::kLetGo:
       return servo.settle(arm.tcp, arm, open);
     case Phase::kBack:
-      return servo.toward(way_[next_], arm, open, next_ < near_legs() ? kNearHold : kFarPace);
+      if (next_ < near_legs()) return servo.toward(way_[next_], arm, open, kMovePace);
+      return servo.toward(way_[next_], arm, kOpenGripper, kFarPace);
     case Phase::kPlan:
     case Phase::kHome:
     case Phase::kOver:
