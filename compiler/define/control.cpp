@@ -137,6 +137,28 @@ struct SettingReader {
             .value_or(0);
   }
 
+  void operator()(const syntax::ControlPathStmt& stmt) {
+    auto* paths = std::get_if<robot::EeDeltaInterpolated>(&robot.law);
+    const char* word = stmt.of_arm ? "`arm_path`" : "`grip_path`";
+    if (paths == nullptr) return void(unread(context, stmt.span, robot, word));
+    const auto& written = stmt.limits.coordinates;
+    if (written.size() != 3) {
+      context
+          .report(Code::P0302, stmt.limits.span,
+                  "expected 3 numbers, found " + std::to_string(written.size()))
+          .point("the most speed, acceleration and jerk of a joint: rad or m, a s, s2 and s3");
+      return;
+    }
+    robot::PathLimits& limits = stmt.of_arm ? paths->arm : paths->fingers;
+    double* const to[] = {&limits.speed, &limits.acceleration, &limits.jerk};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto value = read_positive(
+          context, written[i], dim::kNumber,
+          {"a path takes numbers in rad or m and s, without a unit", plan::Magnitude::kGain});
+      if (value) *to[i] = *value;
+    }
+  }
+
   std::optional<double> share_or_more(const syntax::Quantity& written, const char* takes,
                                       std::optional<double> most) {
     const auto value = read_si(context, written, dim::kNumber, {takes, plan::Magnitude::kGain});
@@ -246,6 +268,9 @@ void choose_law(const syntax::ControlStmt& stmt, Robot& robot) {
       break;
     case robot::ControlKind::kJointPosition:
       robot.law = robot::JointPosition{};
+      break;
+    case robot::ControlKind::kEeDeltaInterpolated:
+      robot.law = robot::EeDeltaInterpolated{};
       break;
   }
 }

@@ -170,16 +170,23 @@ struct RobotReader {
     has_grip = true;
     grip_span = stmt.span;
     read_sign_grip(context, stmt, robot);
-    robot.grip_closed = read_si(context, stmt.closed, dim::kLength,
-                                {"`grip` takes lengths", plan::Magnitude::kJointPosition})
-                            .value_or(0);
-    robot.grip_open = read_si(context, stmt.open, dim::kLength,
-                              {"`grip` takes lengths", plan::Magnitude::kJointPosition})
-                          .value_or(1);
-    if (robot.grip_closed >= robot.grip_open) {
+    const auto closed = make_quantity(stmt.closed.digits, to_text(stmt.closed.unit));
+    robot.grip_turns = closed && closed->dimension == dim::kAngle;
+    const Dimension& of = robot.grip_turns ? dim::kAngle : dim::kLength;
+    const Takes takes{robot.grip_turns ? "`grip` takes two angles or two lengths"
+                                       : "`grip` takes lengths, or angles of fingers that turn",
+                      plan::Magnitude::kJointPosition};
+    robot.grip_closed = read_si(context, stmt.closed, of, takes).value_or(0);
+    robot.grip_open = read_si(context, stmt.open, of, takes).value_or(1);
+    // Fingers that slide open as their joints go up; those that turn may do either.
+    const bool in_order = robot.grip_turns ? robot.grip_closed != robot.grip_open
+                                           : robot.grip_closed < robot.grip_open;
+    if (!in_order) {
       context.report(Situation::kGripOrder, stmt.span,
-                     "expected the closed position below the open one, found `" +
-                         std::string(context.sources.text(stmt.span)) + "`");
+                     std::string("expected the closed position ") +
+                         (robot.grip_turns ? "to differ from" : "below") +
+                         " the open one, found `" + std::string(context.sources.text(stmt.span)) +
+                         "`");
     }
     if (stmt.friction) {
       robot.finger_friction =

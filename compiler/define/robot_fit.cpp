@@ -46,6 +46,8 @@ class Fit {
     const robot::EeControlSpec spec{robot_.tcp.text, arm_, fingers_, robot_.grip_closed,
                                     robot_.grip_open};
     robot::Law law = robot_.law;
+    if (auto* paths = std::get_if<robot::EeDeltaInterpolated>(&law))
+      paths->period = 1 / robot_.control_hz;
     if (auto* osc = std::get_if<robot::OscPose>(&law)) {
       for (const std::string& joint : arm_) osc->limits.push_back(drive(joint).limit);
     }
@@ -150,9 +152,13 @@ class Fit {
     if (robot_.points_span.is_none()) return true;
     const auto tree = robot::Tree::create(model_, driven_);
     if (!tree.ok() || robot_.fingers.size() != 2) return true;
-    const std::vector<double> zero(driven_.size(), 0.0);
+    // Fingers that turn: half closed.
+    std::vector<double> q(driven_.size(), 0.0);
+    for (std::size_t i = 0; i < driven_.size(); ++i) {
+      if (has(fingers_, driven_[i])) q[i] = 0.5 * (robot_.grip_closed + robot_.grip_open);
+    }
     std::vector<Pose> poses(tree->link_count());
-    tree->link_poses(zero, poses);
+    tree->link_poses(q, poses);
     const auto at = [&](const std::string& link) -> const Pose& {
       return poses[static_cast<std::size_t>(model_.find_link(link))];
     };

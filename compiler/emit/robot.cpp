@@ -77,6 +77,10 @@ void Emitter::add_law(const sema::Robot& robot, plan::RobotRecord* record) {
     put(plan::Control::kJointDelta);
   } else if (std::holds_alternative<robot::JointPosition>(robot.law)) {
     put(plan::Control::kJointPosition);
+  } else if (const auto* paths = std::get_if<robot::EeDeltaInterpolated>(&robot.law)) {
+    law.arm_path = {paths->arm.speed, paths->arm.acceleration, paths->arm.jerk};
+    law.finger_path = {paths->fingers.speed, paths->fingers.acceleration, paths->fingers.jerk};
+    put(plan::Control::kEeDeltaInterpolated);
   } else {
     put(plan::Control::kEeDeltaPose);
   }

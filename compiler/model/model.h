@@ -193,6 +193,7 @@ struct Robot {
   double reach_min = 0, reach_max = 0;
   std::vector<Drive> drives;
   double grip_closed = 0, grip_open = 0;
+  bool grip_turns = false;  // they are angles
   double finger_friction = 1, finger_patch = 0;
   double link_friction = 1;  // of all other links: the reference engine's default material
   std::optional<robot::RobotModel>

@@ -494,9 +494,15 @@ struct ControlMostStmt {
   Span span;
   Quantity value;
 };
-using ControlSetting = std::variant<ControlKpStmt, ControlDampingStmt, ControlOutputStmt,
-                                    ControlNullStmt, ControlUncoupleStmt, ControlRampStmt,
-                                    ControlHomeStmt, ControlFromStmt, ControlMostStmt>;
+struct ControlPathStmt {  // `arm_path (1.5, 2, 50)`: speed, acceleration, jerk
+  Span span;
+  bool of_arm = true;
+  Point limits;
+};
+using ControlSetting =
+    std::variant<ControlKpStmt, ControlDampingStmt, ControlOutputStmt, ControlNullStmt,
+                 ControlUncoupleStmt, ControlRampStmt, ControlHomeStmt, ControlFromStmt,
+                 ControlMostStmt, ControlPathStmt>;
 struct ControlStmt {  // `control osc_pose 20Hz { kp 150; home (..) }`
   Span span;
   Name law;

@@ -88,6 +88,10 @@ ControlSetting Parser::control_from() { return ControlFromStmt{{}, name()}; }
 
 ControlSetting Parser::control_most() { return ControlMostStmt{{}, quantity()}; }
 
+ControlSetting Parser::control_arm_path() { return ControlPathStmt{{}, true, point()}; }
+
+ControlSetting Parser::control_grip_path() { return ControlPathStmt{{}, false, point()}; }
+
 RobotStmt Parser::robot_reach() {
   ReachStmt out;
   out.least = quantity();

@@ -173,6 +173,8 @@ class Parser {
   ControlSetting control_home();
   ControlSetting control_from();
   ControlSetting control_most();
+  ControlSetting control_arm_path();
+  ControlSetting control_grip_path();
   Point numbers();  // a point, or one number as a point of one
 
   // ---- parse_camera.cpp, parse_light.cpp ----

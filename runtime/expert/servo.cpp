@@ -6,6 +6,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/robot/control.h"
+#include "runtime/robot/grip_command.h"
 #include "runtime/robot/ik.h"
 #include "runtime/robot/rotation.h"
 
@@ -46,6 +47,7 @@ void Servo::begin(const robot::Chain& chain, const Arm& arm, const robot::Law& l
   last_shift_ = 0;
   learnt_ = 0;
   tracker_.reset();
+  from_measured_ = std::holds_alternative<robot::EeDeltaInterpolated>(law);
   if (const auto* osc = std::get_if<robot::OscPose>(&law)) {
     tracker_.emplace(*osc, rate);
     tracker_->begin(arm.tcp);
@@ -66,6 +68,7 @@ policy::Action Servo::aim(const Pose& goal, const Arm& arm, double gripper) {
 void Servo::observe(const Arm& arm, bool free) {
   const std::size_t n = chain_->joint_count();
   if (tracker_) return tracker_->observe(arm.tcp);
+  if (from_measured_) return;
   if (free && knows_target_) {
     response_.learn(std::span(joints_before_).first(n), std::span(joint_target_).first(n),
                     arm.joints.first(n));
@@ -92,18 +95,31 @@ policy::Action Servo::toward(const Pose& goal, const Arm& arm, double gripper, c
   const Pose next = stepped(arm.tcp, goal, shift, pace.turn);
   last_shift_ = (next.position - arm.tcp.position).norm();
   if (tracker_) return aim(next, arm, gripper);
+  if (from_measured_) return go_to(next, arm, gripper);
   return set_target(pace.lead ? ahead_of(next, arm) : next, arm, gripper);
 }
 
 policy::Action Servo::settle(const Pose& pose, const Arm& arm, double gripper) {
   last_shift_ = 0;
   if (tracker_) return aim(pose, arm, gripper);
+  if (from_measured_) return go_to(pose, arm, gripper);
   return set_target(pose, arm, gripper);
 }
 
 policy::Action Servo::hold(const Arm& arm, double gripper) {
   if (tracker_) return aim(tracker_->goal(), arm, gripper);
+  if (from_measured_) return go_to(arm.tcp, arm, gripper);
   return {0, 0, 0, 0, 0, 0, gripper};
+}
+
+// The law goes from where the tool is, and its gripper goes on by as much as it is told.
+policy::Action Servo::go_to(const Pose& pose, const Arm& arm, double gripper) const {
+  const Pose next = stepped(arm.tcp, pose, kLargestShift, kLargestTurn);
+  const Vec3 shift = next.position - arm.tcp.position;
+  const Vec3 turn = robot::to_rotation_vector(next.rotation * arm.tcp.rotation.conjugate());
+  const bool whole = gripper <= kClosedGripper || gripper >= kOpenGripper;
+  const double grip = whole ? gripper : robot::openness_of_command(gripper) - arm.openness;
+  return {shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z(), grip};
 }
 
 // The pose whose joint positions, as targets, bring the joints to those of `next` within the step.
@@ -127,6 +143,7 @@ Pose Servo::ahead_of(std::span<const double> next, const Arm& arm) const {
 policy::Action Servo::follow(std::span<const double> joints, const Arm& arm, double gripper) {
   last_shift_ = (chain_->pose(joints).position - arm.tcp.position).norm();
   if (tracker_) return aim(chain_->pose(joints), arm, gripper);
+  if (from_measured_) return go_to(chain_->pose(joints), arm, gripper);
   return set_target(ahead_of(joints, arm), arm, gripper);
 }
 

@@ -71,10 +71,12 @@ class Servo {
   Pose ahead_of(std::span<const double> next, const Arm& arm) const;
   void correct_target(const Arm& arm);
   policy::Action aim(const Pose& goal, const Arm& arm, double gripper);
+  policy::Action go_to(const Pose& pose, const Arm& arm, double gripper) const;
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
 
   const robot::Chain* chain_ = nullptr;
   std::optional<ToolTracker> tracker_;  // under `osc_pose`
+  bool from_measured_ = false;          // under `ee_delta_interpolated`
   DriveResponse response_;
   Pose target_;
   Joints joint_target_{}, joints_before_{};

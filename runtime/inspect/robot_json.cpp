@@ -14,6 +14,8 @@ Json law_of(const plan::Plan& plan, plan::Control control, const plan::LawRecord
     const bool from_target = (law.flags & plan::kLawFromTarget) != 0;
     return {{"from", from_target ? "target" : "measured"}, {"most", law.most}};
   }
+  if (control == plan::Control::kEeDeltaInterpolated)
+    return {{"arm_path", law.arm_path}, {"grip_path", law.finger_path}};
   Json home = Json::array();
   for (const double q : plan.home(law)) home.push_back(q);
   return {
@@ -97,6 +99,14 @@ std::string law_text(const Json& robot) {
            std::string(law["from"].get<std::string>() == "target" ? "last target"
                                                                   : "measured position") +
            (most > 0 ? fmt::format(", at most {:.6g} rad or m", most) : "");
+  }
+  if (law.contains("arm_path")) {
+    const auto path = [&](const Json& numbers) {
+      return fmt::format("({}, {}, {})", number(numbers[0]), number(numbers[1]),
+                         number(numbers[2]));
+    };
+    return "paths of joints of at most so much a s, s2, s3: arm " + path(law["arm_path"]) +
+           ", gripper " + path(law["grip_path"]) + " rad or m";
   }
   std::string home;
   for (const Json& q : law["home"]) home += (home.empty() ? "" : ", ") + number(q);

@@ -192,6 +192,9 @@ void list_robots(std::string& out, const Plan& plan) {
       fmt::format_to(to, "  steps from the {}, most {}\n",
                      (law->flags & kLawFromTarget) != 0 ? "last target" : "measured position",
                      law->most);
+    } else if (law != nullptr && control == Control::kEeDeltaInterpolated) {
+      fmt::format_to(to, "  paths of the arm{}, of the fingers{}\n", numbers_text(law->arm_path),
+                     numbers_text(law->finger_path));
     } else if (law != nullptr && control != Control::kJointPosition) {
       fmt::format_to(to, "  kp{}, damping{}, output{}\n", numbers_text(law->kp),
                      numbers_text(law->damping), numbers_text(law->output));

@@ -105,7 +105,8 @@ enum class Control : std::uint32_t {
   kEeDeltaPose = 1,
   kOscPose = 2,
   kJointDelta = 3,
-  kJointPosition = 4
+  kJointPosition = 4,
+  kEeDeltaInterpolated = 5
 };
 
 struct FingerRecord {
@@ -153,7 +154,8 @@ struct LawRecord {
   Slice home;               // kReals, osc_pose: one per joint of the arm
   std::uint32_t flags = 0;  // kLawUncoupled, kLawFromTarget
   std::uint32_t zero = 0;
-  std::uint64_t zero2[6] = {};
+  // ee_delta_interpolated: speed, acceleration, jerk of a joint's path, rad or m and s
+  std::array<double, 3> arm_path{}, finger_path{};
 };
 static_assert(sizeof(LawRecord) == 256);
 

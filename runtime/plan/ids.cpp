@@ -306,6 +306,8 @@ void IdHasher::hash_law(Hasher& h, const LawRecord& law) const {
   h.f64s(law.kp).f64s(law.damping).f64s(law.output).f64(law.null_kp).f64(law.ramp);
   h.f64(law.grip_pace).f64(law.grip_stiffness).f64(law.grip_limit).f64(law.most);
   h.u32(law.flags).u32(law.home.count).f64s(slice_of(tables_.reals, law.home));
+  // Behind all else, so that laws without them keep their ids.
+  if (law.arm_path[0] != 0) h.text("paths").f64s(law.arm_path).f64s(law.finger_path);
 }
 
 Sha256 IdHasher::judge(const TaskRecord& task) {

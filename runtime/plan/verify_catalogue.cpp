@@ -106,7 +106,7 @@ Status RecordCheck::check(const RobotRecord& r) const {
   PROBE_TRY(check_name(r.tcp, "the tool centre point"));
   PROBE_TRY(check_asset(r.urdf, AssetKind::kUrdf, false));
   if (r.control < static_cast<std::uint32_t>(Control::kEeDeltaPose) ||
-      r.control > static_cast<std::uint32_t>(Control::kJointPosition)) {
+      r.control > static_cast<std::uint32_t>(Control::kEeDeltaInterpolated)) {
     return fail(Rule::kControl, &r.control, fmt::format("control law {} is not known", r.control));
   }
   PROBE_TRY(check_positive(r.control_hz, "a control rate"));

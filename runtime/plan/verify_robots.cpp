@@ -27,8 +27,13 @@ Status RecordCheck::check(const LawRecord& l) const {
   PROBE_TRY(check_magnitude(l.most, Magnitude::kJointPosition));
   PROBE_TRY(check_slice(l.home, t.reals.size(), "REAL"));
   PROBE_TRY(check_magnitude(slice_of(t.reals, l.home), Magnitude::kJointPosition));
-  PROBE_TRY(check_zero(l.zero));
-  return check_zero(l.zero2);
+  for (const std::array<double, 3>* path : {&l.arm_path, &l.finger_path}) {
+    for (const double& value : *path) {
+      PROBE_TRY(check_not_negative(value, "a limit of a path"));
+      PROBE_TRY(check_magnitude(value, Magnitude::kGain));
+    }
+  }
+  return check_zero(l.zero);
 }
 
 Status RecordCheck::check(const GearRecord& g) const {
@@ -90,6 +95,7 @@ class RobotCheck : FieldCheck {
     if (wanted == 0) return {};
     const LawRecord& l = t.laws[r.law.first];
     const bool osc = control == Control::kOscPose, steps = control == Control::kJointDelta;
+    const bool paths = control == Control::kEeDeltaInterpolated;
     // `osc_pose` alone has a home, one for each joint of the arm; who moves fingers is not known
     // here.
     if (osc ? l.home.count == 0 || l.home.count > r.drives.count
@@ -99,20 +105,23 @@ class RobotCheck : FieldCheck {
                               r.drives.count, l.home.count));
     }
     if (osc) PROBE_TRY(osc_numbers(l));
+    if (paths) PROBE_TRY(path_numbers(l));
     LawRecord unread = l;  // what is left of it when all that is read is gone
     unread.home = {};
     unread.flags &= ~(osc ? kLawUncoupled : steps ? kLawFromTarget : 0U);
     if (steps) unread.most = 0;
+    if (paths) unread.arm_path = unread.finger_path = {};
     if (osc) {
       unread.kp = unread.damping = unread.output = {};
       unread.null_kp = unread.ramp = 0;
       unread.grip_pace = unread.grip_stiffness = unread.grip_limit = 0;
     }
-    const bool clean = unread.flags == 0 && unread.most == 0 && unread.null_kp == 0 &&
-                       unread.ramp == 0 && unread.grip_pace == 0 && unread.grip_stiffness == 0 &&
-                       unread.grip_limit == 0 && unread.kp == std::array<double, 6>{} &&
-                       unread.damping == std::array<double, 6>{} &&
-                       unread.output == std::array<double, 6>{};
+    const bool clean =
+        unread.flags == 0 && unread.most == 0 && unread.null_kp == 0 && unread.ramp == 0 &&
+        unread.grip_pace == 0 && unread.grip_stiffness == 0 && unread.grip_limit == 0 &&
+        unread.kp == std::array<double, 6>{} && unread.damping == std::array<double, 6>{} &&
+        unread.output == std::array<double, 6>{} && unread.arm_path == std::array<double, 3>{} &&
+        unread.finger_path == std::array<double, 3>{};
     if (clean) return {};
     return fail(Rule::kLawNumbers, &l,
                 fmt::format("control {} has a number that it does not read", r.control));
@@ -127,6 +136,17 @@ class RobotCheck : FieldCheck {
     if (shares && l.grip_limit > 0 && l.grip_limit <= info(Magnitude::kForce).most) return {};
     return fail(Rule::kLawNumbers, &l.ramp,
                 "osc_pose ramps over a share of a step, and its gripper has a pace and a force");
+  }
+
+  Status path_numbers(const LawRecord& l) const {
+    for (const std::array<double, 3>* path : {&l.arm_path, &l.finger_path}) {
+      for (const double& value : *path) {
+        if (value > 0) continue;
+        return fail(Rule::kLawNumbers, &value,
+                    "paths of ee_delta_interpolated have a speed, an acceleration and a jerk");
+      }
+    }
+    return {};
   }
 
   Status fingers(const RobotRecord& r) const {

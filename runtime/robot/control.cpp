@@ -28,7 +28,7 @@ Result<EeDeltaPoseController> EeDeltaPoseController::create(const RobotModel& mo
                    model.path};
   }
   EeDeltaPoseController controller(std::move(chain));
-  PROBE_ASSIGN(controller.range_, finger_range(model, spec.finger_joints));
+  PROBE_ASSIGN(controller.range_, finger_range(model, spec.finger_joints, opens_up(spec)));
   if (!std::isfinite(spec.grip_closed) || !std::isfinite(spec.grip_open)) {
     return Failure{Fault::kUrdf, "the gripper's targets are not finite", model.path};
   }

@@ -26,11 +26,14 @@ struct EeControlSpec {
   double grip_open = 0.038;                // m, at +1
 };
 
+inline bool opens_up(const EeControlSpec& spec) { return spec.grip_closed <= spec.grip_open; }
+
 // What a controller remembers from one control step to the next, whatever its law.
 struct ControlState {
   Pose target;                        // of the tcp link, in the root link's frame; `osc_pose`: goal
   std::vector<double> joint_targets;  // rad and m, drive order; `osc_pose`: the gripper's command,
-                                      // and whether no action was yet
+                                      // and whether no action was yet; `ee_delta_interpolated`:
+                                      // interpolated.cpp
   bool reached = true;                // whether the last action had joint positions
 };
 

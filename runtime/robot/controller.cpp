@@ -33,6 +33,11 @@ Result<Controller> Controller::create(const RobotModel& model, const EeControlSp
                    made.emplace_back(std::move(one));
                    return {};
                  },
+                 [&](const EeDeltaInterpolated& paths) -> Status {
+                   PROBE_ASSIGN(auto one, InterpolatedController::create(model, spec, paths));
+                   made.emplace_back(std::move(one));
+                   return {};
+                 },
                  [&](const auto& of_joints) -> Status {
                    PROBE_ASSIGN(auto one, JointController::create(model, spec, of_joints));
                    made.emplace_back(std::move(one));
@@ -41,7 +46,7 @@ Result<Controller> Controller::create(const RobotModel& model, const EeControlSp
       law));
   PROBE_ASSIGN(Chain chain, Chain::create(model, spec.tcp_link, spec.arm_joints));
   Controller controller(row_of(law), std::move(chain), std::move(made.front()));
-  PROBE_ASSIGN(controller.range_, finger_range(model, spec.finger_joints));
+  PROBE_ASSIGN(controller.range_, finger_range(model, spec.finger_joints, opens_up(spec)));
   controller.joints_ = spec.arm_joints.size() + spec.finger_joints.size();
   controller.tcp_link_ = spec.tcp_link;
   return controller;
@@ -54,7 +59,7 @@ void Controller::reset(std::span<const double> q) {
 }
 
 Status Controller::begin(std::span<const double> action, std::span<const double> measured_q,
-                         int substeps) {
+                         std::span<const double> measured_u, int substeps) {
   if (action.size() != action_size()) {
     return Failure{Fault::kPolicy,
                    fmt::format("an action of {} numbers, `{}` wants {}", action.size(), row_->word,
@@ -67,6 +72,11 @@ Status Controller::begin(std::span<const double> action, std::span<const double>
                    std::copy(action.begin(), action.end(), seven.begin());
                    PROBE_TRY(ee.targets(seven, measured_q));
                    return {};
+                 },
+                 [&](InterpolatedController& paths) -> Status {
+                   ToolAction seven{};
+                   std::copy(action.begin(), action.end(), seven.begin());
+                   return paths.begin(seven, measured_q, measured_u, substeps);
                  },
                  [&](OscPoseController& osc) -> Status { return osc.begin(action, substeps); },
                  [&](JointController& joints) -> Status {
@@ -81,6 +91,17 @@ std::span<const double> Controller::targets() const {
       Overloaded{[](const OscPoseController&) { return std::span<const double>(); },
                  [](const auto& other) { return std::span<const double>(other.last()); }},
       law_);
+}
+
+void Controller::next() {
+  InterpolatedController* paths = std::get_if<InterpolatedController>(&law_);
+  PROBE_CHECK(paths != nullptr, "a law that reads states");
+  paths->next();
+}
+
+std::span<const double> Controller::target_speeds() const {
+  const InterpolatedController* paths = std::get_if<InterpolatedController>(&law_);
+  return paths == nullptr ? std::span<const double>() : paths->target_speeds();
 }
 
 std::span<const double> Controller::believed() const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/robot/control.h"
+#include "runtime/robot/interpolated.h"
 #include "runtime/robot/joint_control.h"
 #include "runtime/robot/laws.h"
 #include "runtime/robot/osc.h"
@@ -28,11 +29,17 @@ class Controller {
   // A new episode at the joint positions q (drive order).
   void reset(std::span<const double> q);
 
-  // A control step of `substeps` begins. Fails (kPolicy) on an action of another size than
-  // action_size() and on numbers that mean nothing; nothing has changed then.
-  Status begin(std::span<const double> action, std::span<const double> measured_q, int substeps);
-  // Of a law that reads positions: targets of the drives, from begin() on. Lives until the next.
+  // A control step of `substeps` begins. `measured_u`: speeds in drive order, for laws that read
+  // states; others take none. Fails (kPolicy) on an action of another size than action_size() and
+  // on numbers that mean nothing; nothing has changed then.
+  Status begin(std::span<const double> action, std::span<const double> measured_q,
+               std::span<const double> measured_u, int substeps);
+  // Of a law that reads states, before each substep: targets() and target_speeds() go on.
+  void next();
+  // Of a law that gives targets of the drives, from begin() on. Lives until the next.
   std::span<const double> targets() const;
+  // At what speeds they are to be there: of a law that says so, else none, and drives brake.
+  std::span<const double> target_speeds() const;
   // Of a law that reads dynamics: the arm's positions at which, and at rest, it believes the robot
   // in the next substep; empty: where it is. See osc.h.
   std::span<const double> believed() const;
@@ -52,7 +59,8 @@ class Controller {
   }
 
  private:
-  using Any = std::variant<EeDeltaPoseController, OscPoseController, JointController>;
+  using Any = std::variant<EeDeltaPoseController, OscPoseController, JointController,
+                           InterpolatedController>;
   Controller(const KindRow& row, Chain chain, Any law)
       : row_(&row), chain_(std::move(chain)), law_(std::move(law)) {}
 

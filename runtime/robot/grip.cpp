@@ -1,20 +1,22 @@
 #include "runtime/robot/grip.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace probe::robot {
 
 double FingerRange::openness(std::span<const double> fingers) const {
-  if (fingers.empty() || !(upper > lower)) return 1;
+  if (fingers.empty() || open == closed) return 1;
   double sum = 0;
   for (const double finger : fingers) sum += finger;
   const double mean = sum / static_cast<double>(fingers.size());
-  return std::clamp((mean - lower) / (upper - lower), 0.0, 1.0);
+  return std::clamp((mean - closed) / (open - closed), 0.0, 1.0);
 }
 
-Result<FingerRange> finger_range(const RobotModel& model, std::span<const std::string> joints) {
+Result<FingerRange> finger_range(const RobotModel& model, std::span<const std::string> joints,
+                                 bool opens_up) {
   FingerRange range;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const std::string& name = joints[i];
@@ -28,6 +30,7 @@ Result<FingerRange> finger_range(const RobotModel& model, std::span<const std::s
                      model.path};
     }
     if (i == 0) range = {joint.lower, joint.upper};
+    if (i == 0 && !opens_up) std::swap(range.closed, range.open);
   }
   return range;
 }

@@ -11,6 +11,8 @@ constexpr KindRow kKinds[] = {
      Reads::kPositions},
     {ControlKind::kJointPosition, "joint_position", ActionLayout::kJoints, 1, true,
      Reads::kPositions},
+    {ControlKind::kEeDeltaInterpolated, "ee_delta_interpolated", ActionLayout::kShiftTurn, 7, false,
+     Reads::kStates},
 };
 
 constexpr bool in_order() {

@@ -1,6 +1,6 @@
 // Control laws as data: one struct a kind, and one table of the kinds. A law turns the numbers of
 // an action into what drives joints; the classes that do so are control.h's (`ee_delta_pose`),
-// osc.h's and joint_control.h's, and controller.h's is whichever a robot has.
+// osc.h's, joint_control.h's and interpolated.h's, and controller.h's is whichever a robot has.
 #pragma once
 
 #include <array>
@@ -11,6 +11,8 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+
+#include "runtime/robot/jerk_path.h"
 
 namespace probe::robot {
 
@@ -54,10 +56,24 @@ struct JointDelta {
 // Joint targets as they are, rad or m.
 struct JointPosition {};
 
-using Law = std::variant<EeDeltaPose, OscPose, JointDelta, JointPosition>;
+// SimplerEnv's Google robot: a target pose from where the tool is, and jerk-limited paths of the
+// joints to it, all of the arm ended together, the fingers' as well (interpolated.h).
+struct EeDeltaInterpolated {
+  PathLimits arm{1.5, 2.0, 50.0};
+  PathLimits fingers{1.0, 7.0, 50.0};
+  double period = 1.0 / 3;  // s, a control step
+};
+
+using Law = std::variant<EeDeltaPose, OscPose, JointDelta, JointPosition, EeDeltaInterpolated>;
 
 // A row for each alternative of Law, in its order.
-enum class ControlKind : std::uint8_t { kEeDeltaPose, kOscPose, kJointDelta, kJointPosition };
+enum class ControlKind : std::uint8_t {
+  kEeDeltaPose,
+  kOscPose,
+  kJointDelta,
+  kJointPosition,
+  kEeDeltaInterpolated
+};
 
 // What the numbers of an action are. The gripper's is the last.
 enum class ActionLayout : std::uint8_t {
@@ -70,6 +86,7 @@ enum class ActionLayout : std::uint8_t {
 // What a law reads of the world.
 enum class Reads : std::uint8_t {
   kPositions,  // joint positions, once a control step; it gives targets of drives
+  kStates,     // positions and speeds, once a control step; it gives targets before each substep
   kDynamics,   // Dynamics, before each substep; it gives efforts (world: by_efforts)
 };
 

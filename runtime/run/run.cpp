@@ -224,7 +224,7 @@ Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<Episo
     const std::uint32_t control = robot_in(job.task).control;
     if (control == static_cast<std::uint32_t>(plan::Control::kEeDeltaPose)) continue;
     arm.control = static_cast<robot::ControlKind>(control - 1);
-    if (arm.control == robot::ControlKind::kOscPose) break;
+    if (!robot::control_kinds()[control - 1].per_joint) break;
   }
   return arm;
 }

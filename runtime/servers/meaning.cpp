@@ -192,6 +192,7 @@ Status check_form(const Profile& profile, ActionForm form, robot::ControlKind co
   const auto takes = [&]() -> Takes {
     switch (control) {
       case robot::ControlKind::kOscPose:
+      case robot::ControlKind::kEeDeltaInterpolated:
         return {ActionForm::kDelta, "changes of the tool's pose"};
       case robot::ControlKind::kJointDelta:
         return {ActionForm::kJointSteps, "steps of the arm's joints"};

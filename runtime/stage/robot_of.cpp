@@ -64,6 +64,13 @@ Result<robot::Law> law_of(const plan::Plan& plan, const plan::RobotRecord& recor
     case plan::Control::kJointDelta:
       return robot::Law(
           robot::JointDelta{(numbers->flags & plan::kLawFromTarget) != 0, numbers->most});
+    case plan::Control::kEeDeltaInterpolated: {
+      const auto limits = [](const std::array<double, 3>& of) {
+        return robot::PathLimits{of[0], of[1], of[2]};
+      };
+      return robot::Law(robot::EeDeltaInterpolated{
+          limits(numbers->arm_path), limits(numbers->finger_path), 1 / record.control_hz});
+    }
     case plan::Control::kJointPosition:
       return robot::Law(robot::JointPosition{});
     default:

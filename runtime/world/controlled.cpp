@@ -41,10 +41,17 @@ Result<ControlLoop> ControlLoop::create(const World& world, const robot::Control
 
 Status ControlLoop::step(std::span<const double> action, int substeps,
                          robot::Controller* controller, World* world) {
-  PROBE_TRY(controller->begin(action, world->joints().first(efforts_.size()), substeps));
+  PROBE_TRY(controller->begin(action, world->joints().first(efforts_.size()),
+                              world->joint_speeds().first(efforts_.size()), substeps));
   if (controller->kind().reads == robot::Reads::kPositions) {
     world->set_targets(controller->targets());
     return world->step(substeps);
+  }
+  if (controller->kind().reads == robot::Reads::kStates) {
+    return world->step(substeps, [&] {
+      controller->next();
+      world->set_targets(controller->targets(), controller->target_speeds());
+    });
   }
   return world->step(substeps, [&] {
     const std::span<const double> believed = controller->believed();

@@ -61,9 +61,19 @@ std::span<const double> World::joint_speeds() const {
 
 double World::drive_load() const { return stepper_->drive_load; }
 
-void World::set_targets(std::span<const double> targets) {
+void World::set_targets(std::span<const double> targets, std::span<const double> speeds) {
   PROBE_CHECK(targets.size() == targets_.size(), "one target per driven joint");
-  for (size_t i = 0; i < targets.size(); ++i) stepper_->joints.target[targets_[i]] = targets[i];
+  PROBE_CHECK(speeds.empty() || speeds.size() == targets_.size(), "one speed per driven joint");
+  const Drives& drives = stepper_->drives;
+  for (size_t i = 0; i < targets.size(); ++i) {
+    const size_t at = targets_[i];
+    double target = targets[i];
+    // k (q* - q) + d (v* - u) is the drive k (q' - q) - d u with q' = q* + d v* / k, its limit
+    // included.
+    if (!speeds.empty() && speeds[i] != 0)
+      target += drives.damping[at] / drives.stiffness[at] * speeds[i];
+    stepper_->joints.target[at] = target;
+  }
 }
 
 Result<World::ToolRef> World::find_tool(std::string_view link, size_t joints,

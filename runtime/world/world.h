@@ -66,8 +66,9 @@ class World {
   std::span<const double> joint_speeds() const;
   // The largest share of its force limit that any drive exerted during the last step().
   double drive_load() const;
-  // One target a joint of each driven articulation, in their order.
-  void set_targets(std::span<const double> targets);
+  // One target a joint of each driven articulation, in their order; and the speeds (rad/s, m/s)
+  // that they are to have there, none for all at rest. Speeds want drives with stiffness.
+  void set_targets(std::span<const double> targets, std::span<const double> speeds = {});
   BodyState body(std::size_t index) const;
   // Puts a body anywhere, at rest.
   void set_body(std::size_t index, const Pose& model_pose);

@@ -133,7 +133,7 @@ const std::map<std::string, std::vector<Field>>& in_code() {
         PROBE_FIELD(LawRecord, grip_pace), PROBE_FIELD(LawRecord, grip_stiffness),
         PROBE_FIELD(LawRecord, grip_limit), PROBE_FIELD(LawRecord, most),
         PROBE_FIELD(LawRecord, home), PROBE_FIELD(LawRecord, flags), PROBE_FIELD(LawRecord, zero),
-        PROBE_FIELD(LawRecord, zero2)}},
+        PROBE_FIELD(LawRecord, arm_path), PROBE_FIELD(LawRecord, finger_path)}},
       {"GEAR", {PROBE_FIELD(GearRecord, friction), PROBE_FIELD(GearRecord, armature)}},
       {"FING", {PROBE_FIELD(FingerRecord, link), PROBE_FIELD(FingerRecord, opens)}},
       {"DRIV",

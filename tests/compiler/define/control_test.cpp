@@ -54,6 +54,30 @@ void write_stump() {
 
 }  // namespace
 
+TEST_CASE("ee_delta_interpolated has its setup's paths where nothing else is said, and drives") {
+  const auto plain = analyze_with_suite(arm("control ee_delta_interpolated 3Hz\n" + kDriven));
+  CHECK_MESSAGE(plain->codes() == "", plain->said());
+  const auto* law = std::get_if<robot::EeDeltaInterpolated>(&other(*plain).law);
+  REQUIRE(law != nullptr);
+  CHECK(law->arm == robot::PathLimits{1.5, 2, 50});
+  CHECK(law->fingers == robot::PathLimits{1, 7, 50});
+  const auto said_so = analyze_with_suite(
+      arm("control ee_delta_interpolated 3Hz { arm_path (1, 3, 20); grip_path (2, 4, 9.5) }\n" +
+          kDriven));
+  law = std::get_if<robot::EeDeltaInterpolated>(&other(*said_so).law);
+  REQUIRE(law != nullptr);
+  CHECK(law->arm == robot::PathLimits{1, 3, 20});
+  CHECK(law->fingers == robot::PathLimits{2, 4, 9.5});
+}
+
+TEST_CASE("a path has three numbers above zero, and is read by one law") {
+  const auto of = [](const std::string& control) { return said(arm(control + "\n" + kDriven)); };
+  CHECK(of("control ee_delta_interpolated 3Hz { arm_path (1, 3) }") == "P0302 (1, 3)");
+  CHECK(of("control ee_delta_interpolated 3Hz { grip_path (1, 0, 3) }") == "P0304 0");
+  CHECK(of("control ee_delta_pose 3Hz { arm_path (1, 3, 5) }") == "P1001 arm_path (1, 3, 5)");
+  CHECK(of("control ee_delta_interpolated 3Hz { kp 3 }") == "P1001 kp 3");
+}
+
 TEST_CASE("osc_pose has robosuite's numbers where nothing else is said") {
   const auto a = analyze_with_suite(arm(kOsc));
   CHECK_MESSAGE(a->codes() == "", a->said());

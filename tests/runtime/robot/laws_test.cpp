@@ -32,7 +32,9 @@ TEST_CASE("each kind of control has a row, a word of its own and a size of its a
     CHECK(find_kind(row.word) == &row);
   }
   CHECK(find_kind("ee_delta") == nullptr);
-  CHECK(known_kinds() == "`ee_delta_pose`, `osc_pose`, `joint_delta`, `joint_position`");
+  CHECK(known_kinds() ==
+        "`ee_delta_pose`, `osc_pose`, `joint_delta`, `joint_position`, "
+        "`ee_delta_interpolated`");
   CHECK(controller(EeDeltaPose{}).action_size() == 7);
   CHECK(controller(osc_at_home()).action_size() == 7);
   CHECK(controller(JointDelta{}).action_size() == 7);
@@ -48,7 +50,7 @@ TEST_CASE("`ee_delta_pose` behind the common face gives the same bits") {
   for (int i = 0; i < 3; ++i) {
     const auto wanted = alone->targets(action, test::kTableStart);
     REQUIRE(wanted.ok());
-    REQUIRE(common.begin(action, test::kTableStart, 100).ok());
+    REQUIRE(common.begin(action, test::kTableStart, {}, 100).ok());
     const auto got = common.targets();
     CHECK(std::vector<double>(got.begin(), got.end()) ==
           std::vector<double>(wanted->begin(), wanted->end()));
@@ -64,21 +66,21 @@ TEST_CASE("steps of joints add up in the target or begin where the joint is, wit
   Controller summed = controller(JointDelta{.from_target = true, .most = 0.5});
   Controller measured = controller(JointDelta{.from_target = false, .most = 0.05});
   for (int i = 0; i < 2; ++i) {
-    REQUIRE(summed.begin(steps, sagged, 1).ok());
-    REQUIRE(measured.begin(steps, sagged, 1).ok());
+    REQUIRE(summed.begin(steps, sagged, {}, 1).ok());
+    REQUIRE(measured.begin(steps, sagged, {}, 1).ok());
   }
   CHECK(summed.targets()[0] == doctest::Approx(test::kTableStart[0] + 0.2));
   CHECK(summed.targets()[5] == doctest::Approx(test::kTableStart[5] + 1.0));
   CHECK(measured.targets()[0] == doctest::Approx(sagged[0] + 0.05));
   CHECK(summed.targets()[6] == doctest::Approx(0.038));
-  for (int i = 0; i < 20; ++i) REQUIRE(summed.begin(steps, sagged, 1).ok());
+  for (int i = 0; i < 20; ++i) REQUIRE(summed.begin(steps, sagged, {}, 1).ok());
   CHECK(summed.targets()[5] == doctest::Approx(3.141582653589793));
 }
 
 TEST_CASE("positions of joints are the targets, kept over save and restore") {
   Controller absolute = controller(JointPosition{});
   const std::vector<double> there{0.3, 0.2, 0.1, 0, -0.1, 9, -1};
-  REQUIRE(absolute.begin(there, test::kTableStart, 1).ok());
+  REQUIRE(absolute.begin(there, test::kTableStart, {}, 1).ok());
   CHECK(absolute.targets()[0] == 0.3);
   CHECK(absolute.targets()[5] == doctest::Approx(3.141582653589793));
   CHECK(absolute.targets()[7] == doctest::Approx(0.014));

@@ -75,7 +75,7 @@ double largest_lag(double dt) {
   std::vector<double> up{0, 0, 0.02, 0, 0, 0, 0};  // 1 mm
   double worst = 0;
   const double w = std::sqrt(150.0);
-  REQUIRE(arm.controller.begin(up, arm.world->joints(), 1).ok());
+  REQUIRE(arm.controller.begin(up, arm.world->joints(), {}, 1).ok());
   const auto tool = arm.world->find_tool("tool", 7);
   robot::Dynamics now;
   std::vector<double> efforts(9);
