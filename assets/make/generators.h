@@ -36,7 +36,9 @@ std::vector<OutputFile> make_yellow_cube();
 
 std::vector<OutputFile> make_widowx();            // robots/widowx/meshes/
 std::vector<OutputFile> make_panda();             // robots/panda/meshes/
+std::vector<OutputFile> make_google_robot();      // robots/google_robot/meshes/
 std::vector<OutputFile> make_table_scene();       // scenes/table/
+std::vector<OutputFile> make_google_table_scene();  // scenes/google_table/
 std::vector<OutputFile> make_sink_fixture();      // fixtures/sink/
 std::vector<OutputFile> make_sink_scene();        // scenes/sink/
 std::vector<OutputFile> make_kitchen_scene();     // scenes/kitchen/
