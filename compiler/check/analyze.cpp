@@ -45,13 +45,15 @@ bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic
 }  // namespace
 
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
-              const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots) {
+              const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots,
+              const Depth& depth) {
   if (roots.empty()) {
     for (const syntax::File* file : files) roots.push_back(file->id);
   }
   Model model;
   Diagnostics found;
   Reporter reporter{found, diagnostics.has_errors()};
+  reporter.depth = depth;
   Context context{sources, reporter, found, asset_root, model, files, roots};
   collect_names(files, context.symbols, found);
   check_repeats(context);

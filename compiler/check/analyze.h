@@ -6,6 +6,7 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/model/model.h"
+#include "compiler/names/reporter.h"
 #include "compiler/syntax/ast.h"
 
 namespace probe::sema {
@@ -17,6 +18,6 @@ namespace probe::sema {
 // by `use`; empty means all.
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
               const std::string& asset_root, Diagnostics& diagnostics,
-              std::vector<FileId> roots = {});
+              std::vector<FileId> roots = {}, const Depth& depth = {});
 
 }  // namespace probe::sema

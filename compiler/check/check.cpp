@@ -13,14 +13,16 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_look_words(model, reporter);
   check_poses(model, reporter);
   check_named(model, reporter);
+  if (reporter.is_stopped()) return;
   check_starts(model, checked.asset_root, reporter);
+  if (reporter.is_stopped()) return;
   check_metrics(model, reporter);
   check_expectations(model, reporter);
   check_samples(model, reporter);
   check_photos(model, reporter);
   check_tags(model, reporter);
   check_magnitudes(checked.symbols, reporter);
-  check_boxes(model, checked.asset_root, reporter);
+  if (!reporter.depth.is_immediate) check_boxes(model, checked.asset_root, reporter);
   check_unused(checked, reporter);
 }
 

@@ -57,11 +57,13 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
   std::vector<bool> fine(model.tasks.size(), false);
   Arms arms;
   Travels travels(model, asset_root);
-  check_fixture_places(model, travels, reporter);
+  const bool is_immediate = reporter.depth.is_immediate;
+  if (!is_immediate) check_fixture_places(model, travels, reporter);
   std::size_t at = 0;
   for (const Task& task : model.tasks) {
     const std::size_t index = at++;
     if (task.starts.empty()) continue;
+    if (reporter.is_stopped()) return;
     const Where where{task.scene, joint_starts_in_all(model, task)};
     std::vector<CameraId> cameras;
     for (const View& view : views_of(model, task)) cameras.push_back(view.camera);
@@ -84,13 +86,13 @@ void check_starts(const Model& model, const std::string& asset_root, Reporter& r
     bool is_reached = true;
     if (!task.motions.empty() || !stands.contains(where)) {
       check_overlap(starts);
-      check_travel(starts, travels);
+      if (!is_immediate) check_travel(starts, travels);
       // What lies beside the table is out of reach and out of view as well.
       is_reached = check_surface(starts) && check_reach(starts, arms);
       if (is_settled()) stands.insert(where);
     }
     if (is_reached) check_frame(starts);
-    check_motion(starts, travels);
+    if (!is_immediate) check_motion(starts, travels);
     fine[index] = reporter.diagnostics.size() == before;
     if (is_settled()) known.insert({where, std::move(cameras)});
   }

@@ -72,9 +72,12 @@ Diagnostic& Diagnostics::add(Diagnostic diagnostic) {
 }
 
 std::size_t Diagnostics::error_count() const {
-  return static_cast<std::size_t>(
-      std::count_if(items_.begin(), items_.end(),
-                    [](const Diagnostic& item) { return item.severity == Severity::kError; }));
+  const auto is_error = [](const Diagnostic& item) { return item.severity == Severity::kError; };
+  for (; counted_ + kUnsettled < items_.size(); ++counted_)
+    counted_errors_ += is_error(items_[counted_]) ? 1 : 0;
+  return counted_errors_ +
+         static_cast<std::size_t>(std::count_if(
+             items_.begin() + static_cast<std::ptrdiff_t>(counted_), items_.end(), is_error));
 }
 
 std::vector<const Diagnostic*> Diagnostics::in_source_order() const {

@@ -118,6 +118,8 @@ class Diagnostics {
   Diagnostic& add(Diagnostic diagnostic);
   void silence(Silenced silenced) { silenced_.push_back(std::move(silenced)); }
 
+  // In constant time: it is asked at every declaration. The severity of a diagnostic is changed, if
+  // at all, before kUnsettled others are reported.
   std::size_t error_count() const;
   bool has_errors() const { return error_count() != 0; }
   bool empty() const { return items_.empty(); }
@@ -129,8 +131,11 @@ class Diagnostics {
   std::vector<const Diagnostic*> in_source_order() const;
 
  private:
+  static constexpr std::size_t kUnsettled = 64;
+
   std::deque<Diagnostic> items_;
   std::vector<Silenced> silenced_;
+  mutable std::size_t counted_ = 0, counted_errors_ = 0;  // of the first items
 };
 
 // The candidate that `name` was probably meant to be, or none: the rule of runtime/base/spelling.h.

@@ -121,7 +121,7 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
       named.push_back(result.file.id);
   }
   out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
-                            out.compilation.diagnostics, named);
+                            out.compilation.diagnostics, named, {.stop = options.stop});
   out.compilation.unused_phrases = unused_phrases(out.model);
   out.compilation.referring = referring_words(out.model);
   for (const sema::Object& object : out.model.objects)
@@ -137,14 +137,22 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   return {};
 }
 
+// A file is known by its path before it is read.
+SourceSet with_unsaved(const CompileOptions& options) {
+  SourceSet sources;
+  for (const auto& [path, text] : options.unsaved) sources.add(path, text);
+  return sources;
+}
+
 // `sources`: files that are known already.
 Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
-                            bool write, SourceSet sources = {}) {
+                            bool write, SourceSet sources) {
   Analyzed analyzed;
   analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
-  if (compilation.ok) {
+  const bool is_stopped = options.stop != nullptr && options.stop->load();
+  if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
         options.asset_root,
         options.suite,
@@ -209,9 +217,10 @@ void merge(Compilation&& program, Compilation& all) {
 }  // namespace
 
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options) {
-  if (files.size() < 2) return compile(files, options, false);
+  if (files.size() < 2) return compile(files, options, false, with_unsaved(options));
   Compilation all;
   all.ok = true;
+  all.sources = with_unsaved(options);
   PROBE_ASSIGN(const std::vector<std::string> roots, program_roots(files, options, all.sources));
   for (const std::string& root : roots) {
     PROBE_ASSIGN(Compilation program,
@@ -222,7 +231,7 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 }
 
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options) {
-  return compile(files, options, true);
+  return compile(files, options, true, with_unsaved(options));
 }
 
 Result<Counted> count(std::span<const std::string> files, const CompileOptions& options) {

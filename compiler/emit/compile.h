@@ -1,6 +1,7 @@
 // The compiler as one call: .probe files to diagnostics and the bytes of a plan.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <functional>
 #include <map>
@@ -27,6 +28,9 @@ struct CompileOptions {
   // Where a `use` is looked up when the file is not beside its user: folders that hold `std/`.
   std::vector<std::string> library_folders = {};
   AssetInspector inspect_asset = {};  // none: files are only looked for
+  // What an editor holds and has not saved, in place of files: by lexically normal path.
+  std::map<std::string, std::string> unsaved = {};
+  const std::atomic<bool>* stop = nullptr;  // once it is true, the answer is not wanted any more
   // The tasks to keep, by name; none: all. For assets that do not serve every task.
   std::function<bool(std::string_view)> wants_task = {};
 };

@@ -154,8 +154,8 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
       name.last->note("so it is named at " + std::to_string(name.count - 1) + " more place" +
                       (name.count > 2 ? "s" : ""));
   }
-  // A mistake elsewhere may be why there is nothing to silence.
-  if (context.has_errors()) return;
+  // A mistake elsewhere, or what was not looked at, may be why there is nothing to silence.
+  if (context.has_errors() || context.reporter.depth.is_immediate) return;
   for (const Allowed& allowed : allows) {
     const bool is_root = std::any_of(roots.begin(), roots.end(), [&](FileId id) {
       return id.value == allowed.allow->span.file.value;

@@ -19,6 +19,8 @@ bool check_magnitude(Context& context, const Span& span, double value, plan::Mag
 
 std::optional<Quantity> read_quantity(Context& context, const syntax::Quantity& written,
                                       const Dimension& wanted, const Takes& takes) {
+  if (auto* wants = context.reporter.depth.wants)
+    wants->push_back({written.span, wanted, std::string(takes.text)});
   if (written.unit == syntax::Unit::kUnknown) {
     ++context.unread;
     return std::nullopt;

@@ -75,6 +75,7 @@ bool Parser::at(TokenKind wanted) {
 }
 
 bool Parser::at_word(std::string_view word) {
+  if (tokens_[pos_].begin == watched_at_ && kind() == TokenKind::kIdent) watched_.push_back(word);
   if (kind() == TokenKind::kIdent && text_at(pos_) == word) return true;
   if (expected_count_ < kMaxExpected) expected_[expected_count_++] = {TokenKind::kIdent, word};
   return false;

@@ -128,4 +128,16 @@ ParseResult parse(const SourceSet& sources, FileId id, Diagnostics& diagnostics)
   return result;
 }
 
+std::vector<std::string_view> words_at(const SourceSet& sources, FileId id, std::uint32_t offset) {
+  const SourceFile& source = sources.file(id);
+  Diagnostics unsaid;
+  ErrorBudget errors(unsaid, kMaxSyntaxErrors);
+  const LexResult lexed = lex(source, id, errors);
+  if (lexed.unreadable || errors.is_spent()) return {};
+  Parser parser(source, lexed.stream, errors);
+  parser.watch(offset);
+  parser.run();
+  return parser.take_watched();
+}
+
 }  // namespace probe::syntax

@@ -27,6 +27,10 @@ struct ParseResult {
 
 ParseResult parse(const SourceSet& sources, FileId id, Diagnostics& diagnostics);
 
+// The words of the language that the grammar takes in place of the word that begins at `offset`, in
+// the order in which it looks for them; for completion. The file is parsed for it.
+std::vector<std::string_view> words_at(const SourceSet& sources, FileId id, std::uint32_t offset);
+
 // A root file and everything it uses, each once. `files` is in the order in which names become
 // known: a file comes after the files it uses; the root is last.
 struct Program {

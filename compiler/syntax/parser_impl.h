@@ -28,6 +28,9 @@ class Parser {
   Parser(const SourceFile& source, const TokenStream& stream, ErrorBudget& errors);
   File run();
   std::vector<TokenRole> take_roles() { return std::move(roles_); }
+  // From now on the words that are looked for where a token begins at `offset` are kept.
+  void watch(std::uint32_t offset) { watched_at_ = offset; }
+  std::vector<std::string_view> take_watched() { return std::move(watched_); }
 
  private:
   // ---- cursor.cpp ----
@@ -377,6 +380,9 @@ class Parser {
   std::uint32_t unclosed_string_ = kNoToken;  // the last one
   std::uint32_t too_deep_ = kNoToken;         // where nesting was given up last
   std::uint32_t nesting_ = 0;
+
+  std::uint32_t watched_at_ = kNoToken;  // an offset
+  std::vector<std::string_view> watched_;
 
   struct Expected {
     TokenKind kind;

@@ -42,6 +42,7 @@ void add_text_verbs(Verb program, int& exit, PhraseDrawing draw_phrases) {
   add_build(program, exit);
   add_fmt(program, exit);
   add_list(program, exit);
+  add_lsp(program, exit);
   add_show(program, exit);
   add_diff(program, exit);
   add_audit(program, exit);

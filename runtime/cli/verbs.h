@@ -41,6 +41,7 @@ void add_build(Verb app, int& exit);
 void add_explain(Verb app, int& exit);
 void add_fmt(Verb app, int& exit);
 void add_list(Verb app, int& exit);
+void add_lsp(Verb app, int& exit);
 void add_show(Verb app, int& exit);
 void add_diff(Verb app, int& exit);
 void add_coverage(Verb app, int& exit);

@@ -18,7 +18,9 @@ Result<Compilation> compile_files(const std::vector<std::string>& files,
   CompileOptions options{.asset_root = root,
                          .suite = request.suite,
                          .library_folders = std::move(library),
-                         .inspect_asset = std::move(inspect)};
+                         .inspect_asset = std::move(inspect),
+                         .unsaved = request.unsaved,
+                         .stop = request.stop};
   if (!request.tasks.empty()) {
     options.wants_task = [glob = request.tasks](std::string_view name) {
       // A task may be asked for with its suite's prefix before it.

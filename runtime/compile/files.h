@@ -1,6 +1,8 @@
 // .probe files compiled with this machine's assets and standard library. Prints nothing.
 #pragma once
 
+#include <atomic>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,9 @@ struct FilesRequest {
   // Glob over the tasks to keep, with or without their suite's prefix; empty: all.
   std::string tasks = {};
   bool wants_plan = true;
+  // As in CompileOptions: what is not saved, and whether an answer is still wanted.
+  std::map<std::string, std::string> unsaved = {};
+  const std::atomic<bool>* stop = nullptr;
 };
 
 // A text with mistakes is no failure: its diagnostics say them. Fails (kAsset, kUsage, kIo) as
