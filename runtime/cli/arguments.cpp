@@ -38,6 +38,37 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
   return kUser;
 }
 
+// CLI11 says of a choice "{a,b}" and of nothing else with braces.
+std::vector<std::string> choices(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t open = type.rfind('{'), close = type.rfind('}');
+  std::vector<std::string> words;
+  if (open == std::string::npos || close == std::string::npos || close < open) return words;
+  for (std::size_t at = open + 1; at < close;) {
+    const std::size_t end = std::min(type.find(',', at), close);
+    words.push_back(type.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+VerbText text_of(const CLI::App& app) {
+  VerbText text{.name = app.get_name(), .about = app.get_description(), .footer = app.get_footer(), .options = {}, .verbs = {}};
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_description().empty()) continue;
+    OptionText& said = text.options.emplace_back();
+    said.is_positional = !option->nonpositional();
+    if (said.is_positional) said.names = {option->get_name()};
+    for (const std::string& name : option->get_snames()) said.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) said.names.push_back("--" + name);
+    said.about = option->get_description();
+    said.takes_value = option->get_expected_max() > 0;
+    said.values = choices(*option);
+  }
+  for (const CLI::App* verb : app.get_subcommands({})) text.verbs.push_back(text_of(*verb));
+  return text;
+}
+
 // The help has what something is said of.
 class SaidFormatter final : public CLI::Formatter {
  public:
@@ -134,6 +165,8 @@ void Verb::refuse_empty_values() {
     });
   }
 }
+
+VerbText Verb::text() const { return text_of(*app_); }
 
 void Verb::callback(std::function<void()> run) { app_->callback(std::move(run)); }
 

@@ -39,6 +39,22 @@ class Option {
   CLI::Option* option_;
 };
 
+// What the help says of an option: "-o", "--out"; of a positional its name alone. `values` are the words it takes,
+// where those are few and known.
+struct OptionText {
+  std::vector<std::string> names;
+  std::string about;
+  bool is_positional = false, takes_value = false;
+  std::vector<std::string> values;
+};
+
+// What the help says of the program or a verb; options without a word about them are left out, as there.
+struct VerbText {
+  std::string name, about, footer;
+  std::vector<OptionText> options;
+  std::vector<VerbText> verbs;
+};
+
 // The program or one of its verbs. A view: the program's CommandLine owns it.
 class Verb {
  public:
@@ -63,6 +79,8 @@ class Verb {
   // An option that is given with an empty text, as a shell does with an unset variable, is refused:
   // it must not mean the default. For the options that were added before.
   void refuse_empty_values();
+  // With all verbs below, as they were added so far.
+  VerbText text() const;
   // Runs when the whole line was understood.
   void callback(std::function<void()> run);
 

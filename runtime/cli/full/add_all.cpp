@@ -28,6 +28,8 @@ void add_all_verbs(Verb program, int& exit) {
   add_libero(program, exit);
   add_doctor(program, exit);
   add_demo(program, exit);
+  add_completion(program, exit);
+  add_manual(program, exit);
 }
 
 }  // namespace probe::cli

@@ -28,6 +28,8 @@ void add_assets(Verb app, int& exit);
 void add_libero(Verb app, int& exit);
 void add_doctor(Verb app, int& exit);
 void add_demo(Verb app, int& exit);
+void add_completion(Verb app, int& exit);
+void add_manual(Verb app, int& exit);
 
 int draw_phrases(const LoadedPlan& loaded, const DrawArguments& arguments);
 
