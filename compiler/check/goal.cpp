@@ -15,6 +15,7 @@ class Reader {
   void read(const Metric& metric) {
     const Given given(metric.variables);
     measure(metric.expr, given);
+    look_for_sides(metric.expr, std::vector<bool>(metric.variables));
     ask(metric.expr, given);
     if (metric.readout == plan::Readout::kOnce) order_within(metric.expr, given);
     order(metric.expr, given);
@@ -101,11 +102,101 @@ class Reader {
     return calls.insert({call.predicate, inner}).second;
   }
 
+  // Whether a number, or what a vector is made of, becomes its opposite where left and right
+  // change places. `odd`: by variable.
+  bool is_odd(ExprRef ref, const std::vector<bool>& odd) const {
+    if (ref == kNoExpr) return false;
+    const ExprNode& node = at(ref);
+    const auto any = [&] {
+      return std::any_of(node.args.begin(), node.args.end(),
+                         [&](ExprRef arg) { return is_odd(arg, odd); });
+    };
+    switch (node.op) {
+      case ExprOp::kVariable:
+        return node.a < odd.size() && odd[node.a];
+      case ExprOp::kAdd:
+      case ExprOp::kSubtract:
+      case ExprOp::kNegate:
+        return any();
+      case ExprOp::kMultiply:
+      case ExprOp::kDivide:
+        return is_odd(node.args[0], odd) != is_odd(node.args[1], odd);
+      case ExprOp::kCall:
+        return is_odd(model_.predicates[node.predicate].body, odd_of(node, odd));
+      case ExprOp::kMeasure:
+        break;
+      default:
+        return false;
+    }
+    switch (node.measure) {
+      case Measure::kX:
+      case Measure::kY:
+      case Measure::kZ: {
+        // Of a size, which has no side; the height of a place, but not of one in another's frame.
+        const ExprNode& of = at(node.args[0]);
+        const bool is_size = of.op == ExprOp::kMeasure &&
+                             (of.measure == Measure::kHalfSize || of.measure == Measure::kHalf);
+        return !is_size && (node.measure != Measure::kZ || is_odd(node.args[0], odd));
+      }
+      case Measure::kViewX:
+      case Measure::kViewY:
+      case Measure::kRobotX:
+      case Measure::kRobotY:
+      case Measure::kAxisX:
+      case Measure::kAxisY:
+      case Measure::kLocal:
+      case Measure::kCentre:
+        return true;
+      case Measure::kAngle:
+        // To the vertical: how a thing stands.
+        return any() && std::none_of(node.args.begin(), node.args.end(), [&](ExprRef arg) {
+                 return at(arg).op == ExprOp::kMeasure && at(arg).measure == Measure::kUp;
+               });
+      case Measure::kMin:
+      case Measure::kMax:
+      case Measure::kLatest:
+        return any();
+      default:
+        return false;
+    }
+  }
+  std::vector<bool> odd_of(const ExprNode& call, const std::vector<bool>& odd) const {
+    std::vector<bool> inner(model_.predicates[call.predicate].variables);
+    for (std::size_t i = 0; i < call.args.size() && i < inner.size(); ++i)
+      inner[i] = is_odd(call.args[i], odd);
+    return inner;
+  }
+  void look_for_sides(ExprRef ref, const std::vector<bool>& odd) {
+    if (ref == kNoExpr || goal_.tells_sides) return;
+    const ExprNode& node = at(ref);
+    switch (node.op) {
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+      case ExprOp::kEqual:
+        goal_.tells_sides = is_odd(node.args[0], odd) || is_odd(node.args[1], odd);
+        break;
+      case ExprOp::kCall: {
+        std::vector<bool> inner = odd_of(node, odd);
+        if (sided_.insert({node.predicate, inner}).second)
+          look_for_sides(model_.predicates[node.predicate].body, inner);
+        break;
+      }
+      default:
+        break;
+    }
+    for (const ExprRef arg : node.args) look_for_sides(arg, odd);
+  }
+
   // What is measured at all, of whatever condition.
   void measure(ExprRef ref, const Given& given) {
     if (ref == kNoExpr) return;
     const ExprNode& node = at(ref);
     switch (node.op) {
+      case ExprOp::kRole:
+      case ExprOp::kObject:
+      case ExprOp::kPart:
+        goal_.spoken.merge(things(ref, given));
+        break;
       case ExprOp::kVector:
       case ExprOp::kRegion:
       case ExprOp::kRegionOf:
@@ -130,7 +221,10 @@ class Reader {
       case ExprOp::kAll:
       case ExprOp::kNo: {
         Given inner = given;
-        bind(inner, node.a, things_in(node.set, given));
+        Things among = things_in(node.set, given);
+        goal_.speaks_of_all = goal_.speaks_of_all || among.empty();
+        goal_.spoken.insert(among.begin(), among.end());
+        bind(inner, node.a, std::move(among));
         measure(node.args[0], inner);
         return;
       }
@@ -142,21 +236,11 @@ class Reader {
 
   static bool tells_sides(Measure measure) {
     switch (measure) {
-      case Measure::kX:
-      case Measure::kY:
-      case Measure::kViewX:
-      case Measure::kViewY:
-      case Measure::kRobotX:
-      case Measure::kRobotY:
-      case Measure::kAxisX:
-      case Measure::kAxisY:
       case Measure::kTravel:
       case Measure::kRate:
       case Measure::kSlide:
       case Measure::kTurn:
       case Measure::kWithin:
-      case Measure::kLocal:
-      case Measure::kCentre:
         return true;
       default:
         return false;
@@ -350,6 +434,7 @@ class Reader {
   const Task& task_;
   Goal& goal_;
   Calls measured_, asked_, ordered_;
+  std::set<std::pair<PredicateId, std::vector<bool>>> sided_;  // looked at for sides
 };
 
 }  // namespace

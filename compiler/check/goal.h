@@ -31,8 +31,12 @@ struct Goal {
   // Two things of which one may do as well as the other: the same is asked of either (`or`).
   std::set<Things> either;
   // Something is measured that is one way on the left and another on the right: a coordinate, a
-  // region, a direction, a joint.
+  // region, a direction, a joint. What is the same on either side is none: a square, `abs`.
   bool tells_sides = false;
+  // Of what it speaks by name or role, of whatever condition; of everything, where it goes through
+  // a set that names nothing.
+  Things spoken;
+  bool speaks_of_all = false;
 };
 
 // In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.

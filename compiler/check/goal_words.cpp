@@ -119,7 +119,7 @@ struct JointGoal {
 };
 
 // What each of the table's words asks of a goal; empty where that is there.
-enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach };
+enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach, kSpares };
 struct GoalWords {
   std::string_view words;
   Asks asks;
@@ -168,6 +168,8 @@ class Told {
         return order_lack(one);
       case Asks::kEach:
         return each_lack(one);
+      case Asks::kSpares:
+        return spare_lack(one);
     }
     return std::nullopt;
   }
@@ -256,6 +258,21 @@ class Told {
     return "its success measures nothing to both of what that stands before";
   }
 
+  // "without touching the can" of which success measures nothing of the can.
+  std::optional<std::string> spare_lack(const GoalWords& one) {
+    const auto at = said().find(one.words);
+    if (!at || goal().speaks_of_all) return std::nullopt;
+    for (std::size_t i = *at + 1; i < said().words.size(); ++i) {
+      const Things& spared = said().words[i].of;
+      if (spared.empty()) continue;
+      if (std::any_of(spared.begin(), spared.end(),
+                      [&](ObjectId thing) { return goal().spoken.contains(thing); }))
+        return std::nullopt;
+      return "its success measures nothing of " + name_of(spared);
+    }
+    return std::nullopt;
+  }
+
   // "to the left of the plate" of which success is that it lies on the plate.
   std::optional<std::string> side_lack(const GoalWords& one) {
     if (goal().tells_sides) return std::nullopt;
@@ -276,12 +293,22 @@ class Told {
   // "first A, then B" of which success is that B was done first, wants no order of the two, or is
   // content with A.
   std::optional<std::string> order_lack(const GoalWords& one) {
+    if (one.words == "once" && !is_of_time()) return std::nullopt;
     if (auto lack = other_order(one)) return lack;
     for (const auto& [first, second] : goal().order) {
       if (earliest(first) && earliest(second) && !is_asked(second))
         return "succeeds without " + name_of(second);
     }
     return no_order(one);
+  }
+
+  // "put B there once A is on it", not "at once" or "once more".
+  bool is_of_time() {
+    const auto at = said().find("once");
+    if (!at || *at + 1 >= said().words.size()) return false;
+    const std::string& next = said().words[*at + 1].text;
+    return (*at == 0 || said().words[*at - 1].text != "at") && next != "more" && next != "again" &&
+           next != "and";
   }
 
   bool is_asked(const Things& things) {
@@ -345,7 +372,7 @@ class Told {
       // Between the two, else at the beginning, where "then" and "afterwards" ask for nothing.
       auto at = said().find(one.words, std::min(*a, *b));
       const bool is_between = at && *at < std::max(*a, *b);
-      if (!is_between && one.words != "before" && one.words != "after") continue;
+      if (!is_between && one.words != "before" && one.asks != Asks::kAfter) continue;
       if (!is_between) at = said().find(one.words);
       if (!at || (!is_between && *at > std::min(*a, *b))) continue;
       if (*at > 0 && said().words[*at - 1].text == "not") continue;

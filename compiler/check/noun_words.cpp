@@ -146,7 +146,8 @@ bool leaves_part_open(const Model& model, const Task& task, const Said& said, Re
               "\"" + noun + "\" denotes " + std::to_string(parts.size()) +
                   " parts of fixtures in `" + task.name + "`")
         .label(model.templates[task.say].span, "said here")
-        .help("they are " + names_of(model, parts) + ": say \"" + model.objects[parts.front()].text.text +
+        .help("they are " + names_of(model, parts) + ": say \"" +
+              model.objects[parts.front()].text.text +
               "\", or `{the target}` of a task that is about one");
     return true;
   }

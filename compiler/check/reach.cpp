@@ -26,7 +26,8 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
   if (found == arms.end())
     found = arms.emplace(starts.task.scene, Arm::of(starts.model, scene)).first;
   if (!found->second || starts.task.source == ObjectId::kNone) return true;
-  constexpr double kAboveTarget = 0.02;  // m
+  constexpr double kAboveTarget = 0.02;            // m
+  constexpr double kThere = 0.001, kAskew = 0.05;  // m, rad
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     const auto& placed = starts.task.starts[e].placed;
     // Source and target are the first two, as far as there are any.
@@ -39,20 +40,28 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
       const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
       if (!miss || may_do(*miss, starts.object(placed[i]))) continue;
       char degrees[32];
-      std::snprintf(degrees, sizeof degrees, "%.2g", miss->rotation * 180 / std::numbers::pi);
+      const double off = miss->rotation * 180 / std::numbers::pi;
+      std::snprintf(degrees, sizeof degrees, off < 10 ? "%.2g" : "%.0f", off);
+      // A lift that ends too high, which no other place mends.
+      const bool is_too_high = miss->above > 0.9 * miss->position && miss->rotation < kAskew;
       Diagnostic& said = starts.reporter.report(
           Situation::kNoGrasp, starts.place({placed[i].object, placed[0].object}),
           "`" + robot.name + "` cannot " +
               (i == 0 ? "grasp `" + starts.object(placed[0]).name + "` from above"
                       : "place `" + starts.object(placed[0]).name + "` on `" +
                             starts.object(placed[1]).name + "`") +
-              " in `" + starts.task.name + "`: the tool stays " + centimetres(miss->position) +
-              " and " + degrees + "deg away");
+              " in `" + starts.task.name + "`: the tool " +
+              (is_too_high
+                   ? "comes no lower than " + centimetres(z + miss->above - scene.surface_z) +
+                         " above the surface there, and has to come to " +
+                         centimetres(z - scene.surface_z)
+               : miss->position < kThere
+                   ? std::string("points ") + degrees + "deg away from straight down"
+                   : "stays " + centimetres(miss->position) + " and " + degrees + "deg away"));
       said.point("episode " + std::to_string(e) + ": " + at(starts.object(placed[i]), placed[i]))
           .label(starts.layout.span, "the layout");
       said.cause = cause_of(starts.layout.span, {scene.name, starts.object(placed[0]).name,
                                                  starts.object(placed[i]).name});
-      constexpr double kThere = 0.001, kAskew = 0.05;  // m, rad
       if (miss->position < kThere && miss->rotation > kAskew && robot.points_span.is_none()) {
         said.help("the tool is taken to point along +x of `" + robot.tcp.text + "`; `tcp " +
                   robot.tcp.text + " points +z` says otherwise");

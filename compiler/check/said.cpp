@@ -90,8 +90,7 @@ Said said_by(const Model& model, const Task& task) {
   for (const Template::Part& part : say.parts) {
     if (part.slot) {
       const auto meant = meant_by(model, task, say, *part.slot);
-      said.words.push_back(
-          {.text = {}, .of = Things(meant.begin(), meant.end()), .ends = false});
+      said.words.push_back({.text = {}, .of = Things(meant.begin(), meant.end()), .ends = false});
       continue;
     }
     for (Said::Word& word : words_in(part.literal)) said.words.push_back(std::move(word));

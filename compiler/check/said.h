@@ -14,8 +14,8 @@ namespace probe::sema {
 
 struct Said {
   struct Word {
-    std::string text;  // folded, without the signs around it; empty of a slot
-    Things of;         // what a slot means, or a name that begins here
+    std::string text;   // folded, without the signs around it; empty of a slot
+    Things of;          // what a slot means, or a name that begins here
     bool ends = false;  // a sign follows
   };
   std::vector<Word> words;

@@ -3,14 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/base/trig.h"
 #include "runtime/robot/ik.h"
 
 namespace probe::sema {
 namespace {
 
 // A place and a downward direction fix five degrees of freedom. An arm with fewer joints takes such
-// a pose only by chance, and how it would grasp instead is not known here.
-constexpr std::size_t kLeastJoints = 5;
+// a pose only by how it is built (one that moves in the plane, with a lift), and how it would grasp
+// instead is not known here: it is asked for the place alone. One of two joints has no volume at
+// all.
+constexpr std::size_t kPoseJoints = 5, kPlaceJoints = 3;
+constexpr double kUnlimited = 3.1;  // rad; of joints without limits
+constexpr double kLever = 0.1;      // m that a radian counts as
 
 // Jittered starts are all different: a million of them is not worth ten seconds of a check. The
 // first ones speak for the rest, which the annulus still bounds.
@@ -34,6 +39,21 @@ Quat from_x(const Vec3& axis) {
   return {half, 0, -half * axis.z(), half * axis.y()};
 }
 
+// The chain's x axis, which is the way the tool points, straight down.
+Quat downwards() {
+  Mat3 down;
+  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  return Quat(down);
+}
+
+void keep_least(std::optional<Shortfall>& least, const Shortfall& miss) {
+  constexpr double kMetresPerRadian = 0.1;
+  const auto weight = [](const Shortfall& of) {
+    return of.position + kMetresPerRadian * of.rotation;
+  };
+  if (!least || weight(miss) < weight(*least)) least = miss;
+}
+
 }  // namespace
 
 std::optional<Arm> Arm::of(const Model& model, const Scene& scene) {
@@ -55,7 +75,7 @@ std::optional<Arm> Arm::of(const Model& model, const Scene& scene) {
     joints.push_back(joint.name);
     start.push_back(scene.joints[static_cast<std::size_t>(drive - robot.drives.begin())].si());
   }
-  if (joints.size() < kLeastJoints) return std::nullopt;
+  if (joints.size() < kPlaceJoints) return std::nullopt;
   std::reverse(joints.begin(), joints.end());
   std::reverse(start.begin(), start.end());
   const Vec3 points(robot.points[0], robot.points[1], robot.points[2]);
@@ -72,30 +92,62 @@ std::optional<Shortfall> Arm::misses(double x, double y, double z) {
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
   if (known_.size() >= kMostPlaces) return std::nullopt;
-  return known_[key] = solve(base_.inverse().apply({x, y, z}));
+  const Vec3 at = base_.inverse().apply({x, y, z});
+  return known_[key] = chain_.joint_count() < kPoseJoints ? solve_place(at) : solve(at);
+}
+
+Shortfall Arm::shortfall(const Vec3& at, std::span<const double> q,
+                         const robot::IkResult& result) const {
+  const Vec3 up = base_.rotation.conjugate() * Vec3::UnitZ();
+  return {result.position_error, result.rotation_error, up.dot(chain_.pose(q).position - at)};
+}
+
+// The place alone, and then as nearly downwards as the arm gets there.
+std::optional<Shortfall> Arm::solve_place(const Vec3& at) const {
+  constexpr double kThere = 1e-3, kAslant = 0.5;  // m; cosine of 60 degrees
+  const Vec3 down = base_.rotation.conjugate() * -Vec3::UnitZ();
+  std::optional<Shortfall> least;
+  for (int from = 0; from < 5; ++from) {
+    std::vector<double> q = start_;
+    // A quarter and three quarters of each joint's range, the first joint and the others.
+    for (std::size_t i = 0; from > 0 && i < q.size(); ++i) {
+      const bool is_far = i == 0 ? from % 2 == 0 : from > 2;
+      const double lower = std::max(chain_.lower()[i], -kUnlimited);
+      const double upper = std::min(chain_.upper()[i], kUnlimited);
+      q[i] = lower + (upper - lower) * (is_far ? 0.75 : 0.25);
+    }
+    for (const double lever : {0.0, kLever}) {
+      const Pose target{at, heading(at.x(), at.y()) * downwards()};
+      std::vector<double> tried = q;
+      const robot::IkResult result =
+          robot::solve_ik(chain_, target, tried,
+                          {.position_tolerance = 1e-4, .rotation_tolerance = 1e-3, .lever = lever});
+      if (lever == 0) q = tried;
+      Shortfall miss = shortfall(at, tried, result);
+      const double cosine =
+          std::clamp((chain_.pose(tried).rotation * Vec3::UnitX()).dot(down), -1.0, 1.0);
+      if (miss.position < kThere && cosine >= kAslant) return std::nullopt;
+      miss.rotation = cosine >= kAslant ? 0 : portable_acos(cosine);
+      keep_least(least, miss);
+    }
+  }
+  return least;
 }
 
 std::optional<Shortfall> Arm::solve(const Vec3& at) const {
-  Mat3 down;  // the chain's x axis is the way the tool points
-  down << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   const Quat eighth(std::sqrt((1 + std::sqrt(0.5)) / 2), 0, 0, std::sqrt((1 - std::sqrt(0.5)) / 2));
   constexpr robot::IkOptions kNear = {.position_tolerance = 1e-4, .rotation_tolerance = 1e-3};
-  constexpr double kMetresPerRadian = 0.1;  // which miss is the least
   // Outward from the base first: that is where an arm's own plane lies.
   Quat yaw = heading(at.x(), at.y());
   std::optional<Shortfall> least;
   for (int i = 0; i < 8; ++i, yaw = eighth * yaw) {
     std::vector<double> q = start_;
-    const Pose target{at, yaw * Quat(down)};
+    const Pose target{at, yaw * downwards()};
     // From the scene's joints, and once more from wherever that got stuck.
     for (int attempt = 0; attempt < 2; ++attempt) {
       const robot::IkResult result = robot::solve_ik(chain_, target, q, kNear);
       if (result.converged) return std::nullopt;
-      const auto weight = [](const Shortfall& miss) {
-        return miss.position + kMetresPerRadian * miss.rotation;
-      };
-      const Shortfall miss{result.position_error, result.rotation_error};
-      if (!least || weight(miss) < weight(*least)) least = miss;
+      keep_least(least, shortfall(at, q, result));
     }
   }
   return least;

@@ -6,9 +6,11 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compiler/model/model.h"
+#include "runtime/robot/ik.h"
 #include "runtime/robot/kinematics.h"
 
 namespace probe::sema {
@@ -17,22 +19,27 @@ namespace probe::sema {
 struct Shortfall {
   double position = 0;  // m
   double rotation = 0;  // rad
+  double above = 0;     // m, how much of it is straight above the pose
 };
 
 class Arm {
  public:
   // Nothing when the arm cannot be asked: its description is not there, the scene gives no joints,
-  // or it has too few driven joints for a tool that points down.
+  // or it has too few driven joints for any place.
   static std::optional<Arm> of(const Model& model, const Scene& scene);
 
   // For the tool's centre at this place of the world (m), pointing down, at any of several turns
-  // about the vertical. Nothing when the arm gets there, or when too much has been asked already.
+  // about the vertical; of an arm with too few joints to choose how its tool points, pointing
+  // anywhere but upwards. Nothing when the arm gets there, or when too much has been asked already.
   std::optional<Shortfall> misses(double x, double y, double z);
 
  private:
   Arm(robot::Chain chain, std::vector<double> start, Pose base)
       : chain_(std::move(chain)), start_(std::move(start)), base_(base) {}
   std::optional<Shortfall> solve(const Vec3& at) const;
+  std::optional<Shortfall> solve_place(const Vec3& at) const;
+  Shortfall shortfall(const Vec3& at, std::span<const double> q,
+                      const robot::IkResult& result) const;
 
   robot::Chain chain_;
   std::vector<double> start_;

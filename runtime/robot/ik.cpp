@@ -12,9 +12,6 @@
 namespace probe::robot {
 namespace {
 
-// Metres that one radian counts as: about the arm's lever, so that both kinds of error fall
-// together.
-constexpr double kLever = 0.3;
 constexpr double kLargestStep = 0.5;  // rad or m an iteration; the linear model is poor beyond
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
@@ -26,27 +23,28 @@ using Normal =
 struct Model {
   Vec6 error;
   Jacobian jacobian;
-  double cost = 0;  // |error|^2
+  double cost = 0;            // |error|^2
+  double rotation_error = 0;  // rad
 
-  void evaluate(const Chain& chain, const Pose& target, std::span<const double> q) {
+  void evaluate(const Chain& chain, const Pose& target, std::span<const double> q, double lever) {
     const Pose now = chain.pose(q, jacobian);
     error.head<3>() = target.position - now.position;
-    error.tail<3>() = kLever * to_rotation_vector(target.rotation * now.rotation.conjugate());
-    jacobian.bottomRows<3>() *= kLever;
+    error.tail<3>() = lever * to_rotation_vector(target.rotation * now.rotation.conjugate());
+    jacobian.bottomRows<3>() *= lever;
     cost = error.squaredNorm();
+    rotation_error = lever > 0 ? error.tail<3>().norm() / lever : 0;
   }
   double position_error() const { return error.head<3>().norm(); }
-  double rotation_error() const { return error.tail<3>().norm() / kLever; }
 };
 
 class Solver {
  public:
-  Solver(const Chain& chain, const Pose& target, std::span<double> q)
-      : chain_(chain), target_(target), q_(q) {
+  Solver(const Chain& chain, const Pose& target, std::span<double> q, double lever)
+      : chain_(chain), target_(target), q_(q), lever_(lever) {
     for (std::size_t i = 0; i < q.size(); ++i) {
       q_[i] = std::clamp(q_[i], chain.lower()[i], chain.upper()[i]);
     }
-    now_.evaluate(chain_, target_, q_);
+    now_.evaluate(chain_, target_, q_, lever_);
   }
 
   IkResult run(const IkOptions& options) {
@@ -60,7 +58,7 @@ class Solver {
         tried[j] = std::clamp(q_[j] + step[Eigen::Index(j)], chain_.lower()[j], chain_.upper()[j]);
       }
       Model next;
-      next.evaluate(chain_, target_, std::span(tried).first(q_.size()));
+      next.evaluate(chain_, target_, std::span(tried).first(q_.size()), lever_);
       if (!(next.cost < now_.cost)) {
         damping = std::max(damping, 1e-4) * 8;
         continue;
@@ -69,13 +67,13 @@ class Solver {
       now_ = next;
       damping = std::max(damping * 0.2, 1e-9);
     }
-    return {done(options), i, now_.position_error(), now_.rotation_error()};
+    return {done(options), i, now_.position_error(), now_.rotation_error};
   }
 
  private:
   bool done(const IkOptions& options) const {
     return now_.position_error() <= options.position_tolerance &&
-           now_.rotation_error() <= options.rotation_tolerance;
+           now_.rotation_error <= options.rotation_tolerance;
   }
 
   // Solves (J^T J + damping) step = J^T e over the joints that are free to move.
@@ -114,6 +112,7 @@ class Solver {
   const Chain& chain_;
   const Pose& target_;
   std::span<double> q_;
+  double lever_;
   Model now_;
 };
 
@@ -122,7 +121,7 @@ class Solver {
 IkResult solve_ik(const Chain& chain, const Pose& target, std::span<double> q,
                   const IkOptions& options) {
   PROBE_CHECK(q.size() == chain.joint_count() && !q.empty(), "one start position a joint");
-  return Solver(chain, target, q).run(options);
+  return Solver(chain, target, q, options.lever).run(options);
 }
 
 }  // namespace probe::robot

@@ -14,6 +14,9 @@ struct IkOptions {
   double position_tolerance = 1e-7;  // m
   double rotation_tolerance = 1e-7;  // rad
   int iterations = 100;
+  // m that one radian counts as: about an arm's lever, so that both kinds of error fall together.
+  // 0: the turn does not matter.
+  double lever = 0.3;
 };
 
 struct IkResult {

@@ -69,12 +69,12 @@ TEST_CASE("a name of several objects says which of them") {
 
 TEST_CASE("a noun at the end of several names says which of them") {
   const auto told = [](const std::string& words) {
-    return first_line(test::analyze_with_suite(
-                          "object coke like blue { name \"coke can\" }\n"
-                          "object pepsi like blue { name \"pepsi can\" }\n"
-                          "task t like red_on_tray { distractors coke, pepsi; say \"" +
-                          words + "\" }\n")
-                          ->said());
+    return first_line(
+        test::analyze_with_suite("object coke like blue { name \"coke can\" }\n"
+                                 "object pepsi like blue { name \"pepsi can\" }\n"
+                                 "task t like red_on_tray { distractors coke, pepsi; say \"" +
+                                 words + "\" }\n")
+            ->said());
   };
   const std::string open = "error[P0402]: \"the can\" denotes 2 objects in `t`";
   CHECK(told("put the can on {the target}, {the source}") == open);
@@ -295,6 +295,56 @@ TEST_CASE("a side that is said is one that success can tell") {
         "error[P1202]: `t` says \"on the right\" and its success measures nothing that tells one "
         "side from another");
   CHECK(told("over(source, target)", "put {the source} next to the left knob") == "");
+}
+
+TEST_CASE("what is the same on either side tells none") {
+  const std::string lack =
+      "error[P1202]: `t` says \"left of\" and its success measures nothing that tells one side "
+      "from another";
+  const auto told = [](const std::string& goal, const std::string& more = "") {
+    return first_line(said_of_two(
+        "at end " + goal, "put {the source} to the left of {the target}, not {the helper}", more));
+  };
+  CHECK(told("abs(x(source) - x(target)) < 5cm") == lack);
+  CHECK(told("(x(source) - x(target)) * (x(source) - x(target)) < 5cm * 5cm") == lack);
+  CHECK(told("angle(axis_x(source), up) < 45deg") == lack);
+  CHECK(told("off(x(local(position(source), target)), x(half_size(target)))",
+             "predicate off(along: length, long: length) = along * along <= long * long\n") ==
+        lack);
+  CHECK(told("x(source) - x(target) < 5cm") == "");
+  CHECK(told("off(x(local(position(source), target)), x(half_size(target)))",
+             "predicate off(along: length, long: length) = along <= long\n") == "");
+}
+
+TEST_CASE("once and as soon as say an order") {
+  const std::string judged =
+      "at end (done(source) and done(helper) and once (done(source) and not once done(helper)))";
+  for (const std::string word : {"once", "as soon as"}) {
+    CAPTURE(word);
+    CHECK(said_of_two(judged,
+                      "put {the helper} on {the target} " + word + " {the source} is on it") == "");
+    CHECK(said_of_two(judged, word + " {the source} is on {the target}, put {the helper} there") ==
+          "");
+    CHECK(first_line(said_of_two(
+              judged, "put {the source} on {the target} " + word + " {the helper} is on it")) ==
+          "error[P1202]: `t` says \"" + word + "\" and succeeds when `red` comes before `blue`");
+    CHECK(first_line(
+              said_of_two("at end (done(source) and done(helper))",
+                          "put {the helper} on {the target} " + word + " {the source} is on it")) ==
+          "error[P1202]: `t` says \"" + word +
+              "\" and its success wants no order of `blue` and `red`");
+  }
+  CHECK(said_of_two("at end (done(source) and done(helper))",
+                    "put {the helper} and {the source} on {the target} at once") == "");
+}
+
+TEST_CASE("what is to be spared is measured") {
+  const std::string words = "put {the source} on {the target} without touching {the helper}";
+  CHECK(first_line(said_of_two("at end done(source)", words)) ==
+        "error[P1202]: `t` says \"without touching\" and its success measures nothing of `blue`");
+  CHECK(said_of_two("at end (done(source) and moved_xy(helper) < 1cm)", words) == "");
+  CHECK(said_of_two("at end (done(source) and no o in distractors | {helper}: moved_xy(o) > 1cm)",
+                    words) == "");
 }
 
 TEST_CASE("a noun of several parts says which of them") {

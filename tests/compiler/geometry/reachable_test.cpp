@@ -88,7 +88,74 @@ TEST_CASE("a place pose out of reach is one over the target") {
   CHECK(said.primary_label == "episode 0: tray at (0cm, 40cm)");
 }
 
-TEST_CASE("an arm of too few joints for a tool that points down is not asked") {
+namespace {
+
+// An arm that moves in the plane, with a lift of 20 cm: four joints. Its tool hangs 10 cm below the
+// wrist; of `turned` it points upwards.
+std::unique_ptr<test::Analysis> with_scara(const std::string& surface,
+                                           const std::string& points = "-z") {
+  std::string text = "<robot name=\"scara\">";
+  for (const char* link : {"base", "upper", "fore", "wrist", "hand", "left", "right"}) {
+    text += std::string("<link name=\"") + link +
+            "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" "
+            "ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
+  }
+  const auto at = [](std::string one, const std::string& xyz) {
+    return one.replace(one.find("<axis"), 0, "<origin xyz=\"" + xyz + "\"/>");
+  };
+  const std::string slide = "lower=\"0\" upper=\"0.2\"", turn = "lower=\"-3\" upper=\"3\"";
+  text += at(joint("shoulder", "revolute", "base", "upper", "0 0 1", turn), "0 0 0.4") +
+          at(joint("elbow", "revolute", "upper", "fore", "0 0 1", turn), "0.3 0 0") +
+          at(joint("lift", "prismatic", "fore", "wrist", "0 0 -1", slide), "0.3 0 0") +
+          at(joint("spin", "revolute", "wrist", "hand", "0 0 1", turn), "0 0 -0.1") +
+          joint("l", "prismatic", "hand", "left", "0 1 0", slide) +
+          joint("r", "prismatic", "hand", "right", "0 -1 0", slide) + "</robot>";
+  test::write_text(test::asset_root() + "/arm/scara.urdf", text);
+  return test::analyze_with_suite(
+      R"(
+robot scara {
+  urdf "arm/scara.urdf"; tcp hand points )" +
+      points + R"(
+  fingers left opens +y, right opens -y; control ee_delta_pose 5Hz
+  drive shoulder, elbow stiffness 100Nm/rad damping 10Nms/rad limit 20Nm
+  drive lift stiffness 1000N/m damping 200Ns/m limit 60N
+  drive spin stiffness 100Nm/rad damping 10Nms/rad limit 20Nm
+  drive l, r stiffness 1000N/m damping 200Ns/m limit 60N
+  grip 1cm .. 4cm friction 2 patch 1cm
+}
+camera above { mount scara.base at (-60cm, 0cm, 1m) look (1, 0, -1); image 64 x 48; lens 20px, 20px, 32px, 24px }
+scene hall {
+  robot scara at (-40cm, 0cm, 80cm) yaw 0deg; joints (0rad, 0.5rad, 2cm, 0rad, 2cm, 2cm)
+  surface )" +
+      surface +
+      R"( area (-50cm, -50cm) .. (50cm, 50cm); camera above; light day; physics 500Hz friction 1
+}
+task t like red_on_tray { scene hall; layout l }
+layout l { place source at (0cm, 10cm); place target at (0cm, -10cm); drop 9cm settle 1s })");
+}
+
+}  // namespace
+
+TEST_CASE("an arm of four joints is asked whether its tool comes low enough") {
+  // The tool's lowest is 10 cm above the base, which stands at 80 cm.
+  const auto low = with_scara("90cm");
+  CHECK_MESSAGE(low->codes() == "", low->said());
+  const auto high = with_scara("80cm");
+  REQUIRE_MESSAGE(high->codes() == "P0502", high->said());
+  CHECK(high->diagnostics.items().front().message ==
+        "`scara` cannot grasp `red` from above in `t`: the tool comes no lower than 10cm above "
+        "the surface there, and has to come to 1cm");
+}
+
+TEST_CASE("an arm of four joints whose tool points upwards or aside is told so") {
+  const auto up = with_scara("90cm", "+z");
+  REQUIRE_MESSAGE(up->codes() == "P0502", up->said());
+  CHECK(up->diagnostics.items().front().message.find(
+            "the tool points 180deg away from straight down") != std::string::npos);
+  CHECK(with_scara("90cm", "+x")->codes() == "P0502");
+}
+
+TEST_CASE("an arm of too few joints for any place is not asked") {
   const auto a = test::analyze_with_suite("");
   const auto& scenes = a->model.scenes;
   REQUIRE(scenes.size() == 1);
