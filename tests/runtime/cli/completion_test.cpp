@@ -26,7 +26,7 @@ echo "${COMPREPLY[*]}"
 
 TEST_CASE("bash completes verbs, verbs of verbs, options and what options take") {
   Sandbox box;
-  REQUIRE(box.run("'" VLAPROBE_BINARY_DIR "/vlaprobe' completion bash > words.bash").exit == 0);
+  write_file(box / "words.bash", box.vlaprobe("completion bash").out);
   CHECK(offered(box, "vlaprobe che") == "check\n");
   CHECK(offered(box, "vlaprobe assets impo") == "import\n");
   CHECK(offered(box, "vlaprobe run --epis") == "--episodes\n");
@@ -36,7 +36,7 @@ TEST_CASE("bash completes verbs, verbs of verbs, options and what options take")
 
 TEST_CASE("bash is left to complete files where a file is wanted") {
   Sandbox box;
-  REQUIRE(box.run("'" VLAPROBE_BINARY_DIR "/vlaprobe' completion bash > words.bash").exit == 0);
+  write_file(box / "words.bash", box.vlaprobe("completion bash").out);
   CHECK(offered(box, "vlaprobe run ''") == "\n");
   CHECK(offered(box, "vlaprobe run --out ''") == "\n");
 }
