@@ -285,6 +285,11 @@ class Told {
         const std::string& word = said().words[next].text;
         if (word != "of" && word != "and" && word != "then" && word != "side") continue;
       }
+      // "Pick up the book on the right" says which book; "take it to the right" says where to.
+      const auto& words = said().words;
+      const bool says_whither = one.words.starts_with("to the") ||
+                                (*at >= 2 && words[*at - 2].text == "to" && words[*at - 1].text == "the");
+      if (!says_whither && tells_which(*at)) continue;
       return "its success measures nothing that tells one side from another";
     }
     return std::nullopt;

@@ -297,6 +297,16 @@ TEST_CASE("a side that is said is one that success can tell") {
   CHECK(told("over(source, target)", "put {the source} next to the left knob") == "");
 }
 
+TEST_CASE("a side that says which thing is picked up asks nothing of success") {
+  const auto told = [](const std::string& words) {
+    return said_of_two("at end over(source, target)", words + ", not {the helper}");
+  };
+  CHECK(told("pick up {the source} on the right and place it on {the target}") == "");
+  CHECK(told("pick up {the source} behind the knob and place it on {the target}") == "");
+  CHECK(told("pick up {the source} and place it on the right of {the target}") != "");
+  CHECK(told("take {the source} to the right of {the target}") != "");
+}
+
 TEST_CASE("what is the same on either side tells none") {
   const std::string lack =
       "error[P1202]: `t` says \"left of\" and its success measures nothing that tells one side "
