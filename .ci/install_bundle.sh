@@ -2,6 +2,7 @@
 # install.sh [--prefix DIR]: unpacks @NAME@.tar.zst, which lies beside it, into DIR (default: ~/.local/share) and says
 # how it is called. Nothing else is touched. What follows the last line is a program that unpacks.
 set -euo pipefail
+unset CDPATH
 name=@NAME@
 prefix=${XDG_DATA_HOME:-${HOME:-}/.local/share}
 while [ $# -gt 0 ]; do
@@ -22,13 +23,18 @@ mkdir -p "$prefix" || exit 2
 prefix=$(cd "$prefix" && pwd)
 # Beside its place and then moved there: what is killed half way leaves no half.
 work=$(mktemp -d "$prefix/.vlaprobe-XXXXXX") || exit 2
-trap 'rm -rf "$work"' EXIT
+# The old one is put back where the new one did not come to its place.
+leave() {
+  if [ -e "$work/old" ] && [ ! -e "$prefix/$name" ]; then mv -T "$work/old" "$prefix/$name"; fi
+  rm -rf "$work"
+}
+trap leave EXIT
 tail -n 1 "${BASH_SOURCE[0]}" | base64 -d >"$work/unzstd"
 chmod +x "$work/unzstd"
 "$work/unzstd" <"$archive" | tar -xf - -C "$work" ||
   { echo "cannot be unpacked into $prefix" >&2; exit 2; }
 "$work/$name/bin/vlaprobe" --version >/dev/null || { echo "does not run here" >&2; exit 2; }
-if [ -e "$prefix/$name" ]; then mv "$prefix/$name" "$work/old"; fi
-mv "$work/$name" "$prefix/$name"
+if [ -e "$prefix/$name" ]; then mv -T "$prefix/$name" "$work/old"; fi
+mv -T "$work/$name" "$prefix/$name" || { echo "cannot be put into $prefix" >&2; exit 2; }
 printf 'export PATH=%q:$PATH   # then: vlaprobe demo\n' "$prefix/$name/bin"
 exit 0

@@ -9,7 +9,10 @@ out=${1:-$root/runs/quickstart}
 vlaprobe=$root/bin/vlaprobe
 if [ ! -x "$vlaprobe" ]; then
   commit=$(git -C "$root" rev-parse HEAD 2>/dev/null || true)
-  made=$([ -z "$commit" ] || grep -lxF "$commit" "$root"/build/bundle/*/COMMIT 2>/dev/null | head -n 1)
+  made=
+  for made_of in "$root"/build/bundle/*/COMMIT; do
+    if [ -n "$commit" ] && [ -f "$made_of" ] && [ "$(cat "$made_of")" = "$commit" ]; then made=$made_of; fi
+  done
   if [ -n "$made" ]; then
     vlaprobe=$(dirname "$made")/bin/vlaprobe
   else

@@ -28,6 +28,7 @@ hashes() { "$here/build/vlaprobe" results "$1" --json | grep -E '"(trace|image|f
 
 "$here/.ci/build" vlaprobe
 check "the build runs two episodes" episodes "$here/build/vlaprobe" "$here/suite/intact.probe" "$work/built"
+check "the checkout's quickstart goes on where no bundle is of its commit" "$here/examples/quickstart.sh" "$work/quick"
 prefix="$work/a place für 試"
 check "install.sh installs beside others" bash "$made/install.sh" --prefix "$prefix"
 check "installing once more replaces it" bash "$made/install.sh" --prefix "$prefix"

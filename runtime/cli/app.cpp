@@ -17,7 +17,7 @@ constexpr char kAbout[] =
     "vlaprobe: probing tasks for vision-language-action policies, compiled and judged";
 constexpr char kExample[] =
     "example: vlaprobe run suite/intact.probe --policy expert -o runs/first\n"
-    "for the first time: vlaprobe demo shows a task, its episodes, a video and a report in half a minute\n"
+    "for the first time: vlaprobe demo shows a task, its episodes, a video and a report in ten seconds\n"
     "exit codes: 0 fine, 1 your text or arguments, 2 files, network or policy, 3 our mistake";
 
 }  // namespace

@@ -112,15 +112,12 @@ std::string zsh_completion(const VerbText& program) {
         value = ":value:(" + joined(option.values) + ")";
       else if (option.takes_value)
         value = ":value:_files";
-      if (option.is_positional) {
-        arguments += fmt::format("    {} \\\n", in_quotes("*:" + zsh_words(option.names.front()) + ":_files"));
-        continue;
-      }
+      if (option.is_positional) continue;  // files, below
       for (const std::string& word : option.names)
         arguments += fmt::format("    {} \\\n", in_quotes(word + "[" + zsh_words(option.about) + "]" + value));
     }
     if (place.verb->verbs.empty()) {
-      functions += fmt::format("{}() {{\n  _arguments \\\n{}    && return\n}}\n", name, arguments);
+      functions += fmt::format("{}() {{\n  _arguments \\\n{}    '*:file:_files' && return\n}}\n", name, arguments);
       continue;
     }
     std::string verbs, cases;

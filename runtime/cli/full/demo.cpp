@@ -69,7 +69,7 @@ int demonstrate(const std::string& out) {
 
 void add_demo(Verb app, int& exit) {
   auto out = std::make_shared<std::string>("vlaprobe-demo");
-  Verb verb = app.add_subcommand("demo", "a task, its episodes, a video and a report in half a minute");
+  Verb verb = app.add_subcommand("demo", "a task, its episodes, a video and a report in ten seconds");
   verb.footer("every step is a command that you can type\nexample: vlaprobe demo -o demo");
   verb.add_option("-o,--out", *out, "folder to write (default: vlaprobe-demo)");
   verb.refuse_empty_values();
