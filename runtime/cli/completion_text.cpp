@@ -4,21 +4,10 @@
 
 #include <algorithm>
 
+#include "runtime/base/shell_word.h"
+
 namespace probe::cli {
 namespace {
-
-// In '...' of any of the three shells.
-std::string in_quotes(std::string_view text) {
-  std::string out = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      out += "'\\''";
-    } else {
-      out += c;
-    }
-  }
-  return out + "'";
-}
 
 // Of zsh's descriptions, in which brackets and colons have a meaning.
 std::string zsh_words(std::string_view text) {
@@ -66,12 +55,12 @@ std::string bash_completion(const VerbText& program) {
       all.insert(all.end(), option.names.begin(), option.names.end());
       for (const std::string& name : option.names) {
         if (!option.values.empty())
-          values += fmt::format("    {}) words={} ;;\n", in_quotes(place.path + " " + name), in_quotes(joined(option.values)));
+          values += fmt::format("    {}) words={} ;;\n", shell_word(place.path + " " + name), shell_word(joined(option.values)));
         else if (option.takes_value)
-          values += fmt::format("    {}) return ;;\n", in_quotes(place.path + " " + name));
+          values += fmt::format("    {}) return ;;\n", shell_word(place.path + " " + name));
       }
     }
-    words += fmt::format("    {}) words={} ;;\n", in_quotes(place.path), in_quotes(joined(all)));
+    words += fmt::format("    {}) words={} ;;\n", shell_word(place.path), shell_word(joined(all)));
   }
   return fmt::format(R"(# source <(vlaprobe completion bash)
 _vlaprobe() {{
@@ -114,7 +103,7 @@ std::string zsh_completion(const VerbText& program) {
         value = ":value:_files";
       if (option.is_positional) continue;  // files, below
       for (const std::string& word : option.names)
-        arguments += fmt::format("    {} \\\n", in_quotes(word + "[" + zsh_words(option.about) + "]" + value));
+        arguments += fmt::format("    {} \\\n", shell_word(word + "[" + zsh_words(option.about) + "]" + value));
     }
     if (place.verb->verbs.empty()) {
       functions += fmt::format("{}() {{\n  _arguments \\\n{}    '*:file:_files' && return\n}}\n", name, arguments);
@@ -122,7 +111,7 @@ std::string zsh_completion(const VerbText& program) {
     }
     std::string verbs, cases;
     for (const VerbText& verb : place.verb->verbs) {
-      verbs += fmt::format("    {}\n", in_quotes(zsh_words(verb.name) + ":" + zsh_words(verb.about)));
+      verbs += fmt::format("    {}\n", shell_word(zsh_words(verb.name) + ":" + zsh_words(verb.about)));
       cases += fmt::format("      {}) {}_{} ;;\n", verb.name, name, verb.name);
     }
     functions += fmt::format(R"({0}() {{
@@ -156,15 +145,15 @@ std::string fish_completion(const VerbText& program) {
       at = end + 1;
     }
     for (const VerbText& verb : place.verb->verbs)
-      out += fmt::format("complete -c vlaprobe -n {} -a {} -d {}\n", in_quotes(here), verb.name, in_quotes(verb.about));
+      out += fmt::format("complete -c vlaprobe -n {} -a {} -d {}\n", shell_word(here), verb.name, shell_word(verb.about));
     for (const OptionText& option : place.verb->options) {
       if (option.is_positional) continue;
       std::string names;
       for (const std::string& name : option.names)
         names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       std::string value = option.takes_value ? " -r" : "";
-      if (!option.values.empty()) value = " -x -a " + in_quotes(joined(option.values));
-      out += fmt::format("complete -c vlaprobe -n {}{}{} -d {}\n", in_quotes(here), names, value, in_quotes(option.about));
+      if (!option.values.empty()) value = " -x -a " + shell_word(joined(option.values));
+      out += fmt::format("complete -c vlaprobe -n {}{}{} -d {}\n", shell_word(here), names, value, shell_word(option.about));
     }
   }
   return out;

@@ -1,6 +1,8 @@
 // The script is for people too: they read it before they submit it.
 #include "runtime/cluster/job_script.h"
 
+#include "runtime/base/shell_word.h"
+
 namespace probe::cluster {
 namespace {
 
@@ -118,23 +120,6 @@ std::string sbatch_option(std::string_view option) {
 }
 
 }  // namespace
-
-std::string shell_word(std::string_view text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) {
-    return std::string(text);
-  }
-  std::string word = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      word += "'\\''";
-    } else {
-      word.push_back(c);
-    }
-  }
-  return word + "'";
-}
 
 std::string shard_folder(int shard, int shards) {
   return "shards/" + std::to_string(shard) + "-of-" + std::to_string(shards);

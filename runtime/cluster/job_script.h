@@ -34,7 +34,4 @@ Result<std::string> to_text(const JobScript& script);
 // The folder of one shard's run below `out`: "shards/2-of-4".
 std::string shard_folder(int shard, int shards);
 
-// One word of a shell, whatever it holds: 'it'\''s'. Plain words stay as they are.
-std::string shell_word(std::string_view text);
-
 }  // namespace probe::cluster

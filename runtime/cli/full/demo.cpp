@@ -6,6 +6,7 @@
 
 #include "runtime/base/own_folder.h"
 #include "runtime/base/say.h"
+#include "runtime/base/shell_word.h"
 #include "runtime/cli/app.h"
 #include "runtime/cli/full/add_all.h"
 #include "runtime/cli/full/verbs.h"
@@ -38,7 +39,7 @@ std::vector<Step> steps(const std::string& suite, const std::string& out) {
 
 int run_step(const Step& step) {
   std::string line = "vlaprobe";
-  for (const std::string& word : step.words) line += " " + word;
+  for (const std::string& word : step.words) line += " " + shell_word(word);
   put("\n{}\n$ {}\n", step.what, line);
   std::fflush(stdout);  // what steps say of themselves goes to stderr
   std::vector<std::string> words = step.words;

@@ -1,3 +1,4 @@
+#include "runtime/base/shell_word.h"
 #include "runtime/cluster/job_script.h"
 
 #include <doctest/doctest.h>
