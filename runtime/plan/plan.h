@@ -61,7 +61,6 @@ class Plan {
   const SensorRecord* sensor(const CameraRecord& camera) const {
     return camera.sensor.count == 0 ? nullptr : &tables_.sensors[camera.sensor.first];
   }
-  // Null: the object looks as its mesh does.
   // Null: by its density.
   const MassRecord* mass(const ObjectRecord& object) const {
     return object.mass.count == 0 ? nullptr : &tables_.masses[object.mass.first];
@@ -70,6 +69,7 @@ class Plan {
   std::span<const double> armatures(const FixtureRecord& fixture) const {
     return slice_of(tables_.reals, fixture.armatures);
   }
+  // Null: the object looks as its mesh does.
   const CoverRecord* cover(const ObjectRecord& object) const {
     return object.cover.count == 0 ? nullptr : &tables_.covers[object.cover.first];
   }

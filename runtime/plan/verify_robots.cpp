@@ -105,7 +105,7 @@ class RobotCheck : FieldCheck {
                               r.drives.count, l.home.count));
     }
     if (osc) PROBE_TRY(osc_numbers(l));
-    if (paths) PROBE_TRY(path_numbers(l));
+    if (paths) PROBE_TRY(path_numbers(r, l));
     LawRecord unread = l;  // what is left of it when all that is read is gone
     unread.home = {};
     unread.flags &= ~(osc ? kLawUncoupled : steps ? kLawFromTarget : 0U);
@@ -138,13 +138,19 @@ class RobotCheck : FieldCheck {
                 "osc_pose ramps over a share of a step, and its gripper has a pace and a force");
   }
 
-  Status path_numbers(const LawRecord& l) const {
+  Status path_numbers(const RobotRecord& r, const LawRecord& l) const {
     for (const std::array<double, 3>* path : {&l.arm_path, &l.finger_path}) {
       for (const double& value : *path) {
         if (value > 0) continue;
         return fail(Rule::kLawNumbers, &value,
                     "paths of ee_delta_interpolated have a speed, an acceleration and a jerk");
       }
+    }
+    // What a drive is to reach at a speed lies damping / stiffness of it ahead.
+    for (const DriveRecord& d : slice_of(t.drives, r.drives)) {
+      if (d.stiffness > 0) continue;
+      return fail(Rule::kLawNumbers, &d.stiffness,
+                  "a drive under ee_delta_interpolated has a stiffness above 0");
     }
     return {};
   }

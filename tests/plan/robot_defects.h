@@ -71,6 +71,13 @@ inline std::vector<Defect> robot_defects() {
          r.laws[0].arm_path = {1.5, 2, 50};
          r.laws[0].finger_path = {1, 0, 50};
        }},
+      {"DRIV", "a stiffness above 0",
+       [](Records& r, Writer&) {
+         r.robots[1].control = static_cast<std::uint32_t>(Control::kEeDeltaInterpolated);
+         r.laws[0] = {};
+         r.laws[0].arm_path = {1.5, 2, 50};
+         r.laws[0].finger_path = {1, 2, 50};
+       }},
       {"LAWS", "has 0 home positions", [](Records& r, Writer&) { r.laws[0].home = {}; }},
       {"GEAR", "the friction of a joint", [](Records& r, Writer&) { r.gears[0].friction = -1; }},
       {"GEAR", "an armature", [](Records& r, Writer&) { r.gears[1].armature = -1; }},
