@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
@@ -19,23 +20,38 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kTemporary = ".tmp";  // and the process that writes it
+// In a folder that is being made: the machine of that process, whose number is another's elsewhere.
+constexpr const char* kMarker = ".vlaprobe_writes";
 
-// What processes left that were ended before they were done. A number that is another process's
-// by now keeps its folder.
+std::string this_machine() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? std::string(name.data()) : "";
+}
+
+bool is_written_here(const fs::path& folder) {
+  std::ifstream file(folder / kMarker, std::ios::binary);
+  std::string said;
+  return file && std::getline(file, said) && !said.empty() && said == this_machine();
+}
+
+// What processes of this machine left that were ended before they were done. A number that is
+// another process's by now keeps its folder, and so does what another machine that sees the same
+// disk may still write.
 void remove_left_over(const fs::path& named) {
   const std::string stem = named.filename().string() + std::string(kTemporary);
-  std::error_code error;
+  std::error_code error, unknown;
   std::vector<fs::path> left;
   for (fs::directory_iterator at(named.parent_path(), error), end; !error && at != end;
        at.increment(error)) {
     const std::string name = at->path().filename().string();
-    if (!name.starts_with(stem) || !at->is_directory()) continue;
+    if (!name.starts_with(stem) || !fs::is_directory(at->path(), unknown)) continue;
     const std::string_view digits = std::string_view(name).substr(stem.size());
     ::pid_t process = 0;
     const auto [stop, wrong] =
         std::from_chars(digits.data(), digits.data() + digits.size(), process);
     if (wrong != std::errc() || stop != digits.data() + digits.size() || process <= 0) continue;
-    if (::kill(process, 0) != 0 && errno == ESRCH) left.push_back(at->path());
+    if (is_written_here(at->path()) && ::kill(process, 0) != 0 && errno == ESRCH)
+      left.push_back(at->path());
   }
   for (const fs::path& path : left) fs::remove_all(path, error);
 }
@@ -56,7 +72,13 @@ Result<OutputFolder> OutputFolder::create(const std::string& path) {
       named.string() + std::string(kTemporary) + std::to_string(::getpid());
   fs::create_directories(temporary, error);
   if (error) return Failure{Fault::kIo, "cannot make the folder: " + error.message(), temporary};
-  return OutputFolder(named.string(), temporary);
+  OutputFolder made(named.string(), temporary);
+  const std::string marker = (fs::path(temporary) / kMarker).string();
+  std::ofstream out(marker, std::ios::binary);
+  out << this_machine() << '\n';
+  out.close();
+  if (!out) return Failure{Fault::kIo, "cannot write the file", marker};
+  return made;
 }
 
 OutputFolder::OutputFolder(OutputFolder&& other) noexcept
@@ -96,6 +118,8 @@ Status OutputFolder::finish(bool with_manifest) {
     if (!out) return Failure{Fault::kIo, "cannot write the manifest", temporary_};
   }
   std::error_code error;
+  fs::remove(fs::path(temporary_) / kMarker, error);
+  if (error) return Failure{Fault::kIo, "cannot finish the folder: " + error.message(), temporary_};
   fs::remove(target_, error);  // an empty folder of that name
   fs::rename(temporary_, target_, error);
   if (error) {

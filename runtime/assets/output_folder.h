@@ -11,8 +11,8 @@ namespace probe::assets {
 
 class OutputFolder {
  public:
-  // Fails (kIo) when `path` is there and not an empty folder. Removes what processes left beside it
-  // that were killed while they made the same folder.
+  // Fails (kIo) when `path` is there and not an empty folder. Removes what processes of this
+  // machine left beside it that were killed while they made the same folder.
   static Result<OutputFolder> create(const std::string& path);
   OutputFolder(OutputFolder&& other) noexcept;
   OutputFolder& operator=(OutputFolder&&) = delete;

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -238,13 +239,27 @@ TEST_CASE("what an import left that was killed is removed by the next one, anoth
   REQUIRE(waitpid(dead, nullptr, 0) == dead);
   const std::string left = "out.tmp" + std::to_string(dead) + "/things.probe";
   const std::string living = "out.tmp" + std::to_string(getppid()) + "/things.probe";
-  folder.write(left, "half");
-  folder.write(living, "half");
+  std::array<char, 256> here{};
+  REQUIRE(gethostname(here.data(), here.size() - 1) == 0);
+  const auto marked = [&](const std::string& path, const std::string& machine) {
+    folder.write(path, "half");
+    folder.write((fs::path(path).parent_path() / ".vlaprobe_writes").string(), machine + "\n");
+  };
+  marked(left, here.data());
+  marked(living, here.data());
   folder.write("out.tmpl/mine", "kept");
   REQUIRE(folder.import().ok());
   CHECK_FALSE(fs::exists((folder.root / left).parent_path()));
   CHECK(fs::exists(folder.root / living));
   CHECK(fs::exists(folder.root / "out.tmpl/mine"));
+  CHECK_FALSE(fs::exists(folder.root / "out/.vlaprobe_writes"));
+  // A process of another machine on the same disk, and a folder that no import made.
+  marked(left, "another-" + std::string(here.data()));
+  REQUIRE(folder.import().ok());
+  CHECK(fs::exists(folder.root / left));
+  fs::remove((folder.root / left).parent_path() / ".vlaprobe_writes");
+  REQUIRE(folder.import().ok());
+  CHECK(fs::exists(folder.root / left));
 }
 
 TEST_CASE("two imports into one folder: one of them is whole, the other is told") {
