@@ -2,6 +2,7 @@
 // and how it was measured.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ struct FidelityOptions {
   std::string records;   // of the benchmark's own program; empty: rows of these are not measured
   int starts = 50;       // of a task: how many first ones come to rest
 };
+
+// The worse of two deviations: what is no number is worse than any, so that no bar holds it.
+inline double worse(double a, double b) { return std::isnan(a) || b <= a ? a : b; }
 
 enum class Held { kYes, kNo, kNotMeasured };
 std::string_view to_text(Held held);  // "held", "missed", "not measured"

@@ -94,7 +94,7 @@ Result<FidelityRow> torques_row(Imported& imported, const Records& records) {
       osc.efforts(substep.state, tau);
       for (std::size_t i = 0; i < kArm; ++i) {
         const double limit = i < 5 ? 80 : 12;
-        worst = std::max(worst, std::abs(tau[i] - std::clamp(substep.torques[i], -limit, limit)));
+        worst = worse(worst, std::abs(tau[i] - std::clamp(substep.torques[i], -limit, limit)));
       }
       ++compared;
     }
@@ -114,9 +114,9 @@ namespace {
 struct Deviation {
   double joint = 0, tool = 0, finger = 0;  // rad, m, m
   void take(const Deviation& other) {
-    joint = std::max(joint, other.joint);
-    tool = std::max(tool, other.tool);
-    finger = std::max(finger, other.finger);
+    joint = worse(joint, other.joint);
+    tool = worse(tool, other.tool);
+    finger = worse(finger, other.finger);
   }
 };
 
@@ -169,9 +169,9 @@ Result<Followed> follow(Imported& imported, const Records& records, const Record
     followed.touching += touches(*stage, *plan) ? 1 : 0;
     Deviation off;
     for (std::size_t i = 0; i < kArm; ++i)
-      off.joint = std::max(off.joint, std::abs(stage->q()[i] - row[q_at + i]));
-    off.finger = std::max(std::abs(stage->q()[7] - row[finger_at]),
-                          std::abs(stage->q()[8] + row[finger_at + 1]));
+      off.joint = worse(off.joint, std::abs(stage->q()[i] - row[q_at + i]));
+    off.finger = worse(std::abs(stage->q()[7] - row[finger_at]),
+                       std::abs(stage->q()[8] + row[finger_at + 1]));
     off.tool =
         (stage->sample().tcp - Vec3(row[tool_at], row[tool_at + 1], row[tool_at + 2])).norm();
     followed.off.take(off);
@@ -185,7 +185,7 @@ Result<Followed> follow(Imported& imported, const Records& records, const Record
   std::size_t at = 10 + 7 * task.said["objects"].size();
   const auto joints = stage->q().subspan(kArm + 2);
   for (std::size_t i = 0; i < joints.size() && at + i < last.size(); ++i, ++followed.fixture_joints)
-    followed.fixture = std::max(followed.fixture, std::abs(joints[i] - last[at + i]));
+    followed.fixture = worse(followed.fixture, std::abs(joints[i] - last[at + i]));
   return followed;
 }
 
@@ -201,16 +201,16 @@ Result<std::vector<FidelityRow>> steps_rows(Imported& imported, const Records& r
     if (!records.has("reference/" + task.key() + "_osc.csv")) continue;
     PROBE_ASSIGN(const Followed one, follow(imported, records, task));
     ++runs;
-    fixture = std::max(fixture, one.fixture);
+    fixture = worse(fixture, one.fixture);
     joints += one.fixture_joints;
-    if (one.fixture > kFixture)
+    if (!(one.fixture <= kFixture))
       moved.push_back(fmt::format("{}: {:.2g} m or rad", task.key(), one.fixture));
     if (one.touching == 0) {
       ++free_runs;
       steps += one.steps;
       free.take(one.off);
     }
-    if (one.touching > 0 || one.off.joint > kJoint || one.off.tool > kTool)
+    if (one.touching > 0 || !(one.off.joint <= kJoint) || !(one.off.tool <= kTool))
       others.push_back(fmt::format(
           "{}: joints {:.3g} mrad, tool {:.3g} mm, fingers {:.3g} mm; the arm touches something in "
           "{} of {} steps",
@@ -218,23 +218,37 @@ Result<std::vector<FidelityRow>> steps_rows(Imported& imported, const Records& r
           one.steps));
   }
   const std::string over = fmt::format("{} steps of {} runs of {}", steps, free_runs, runs);
-  const auto held = [&](bool is_held) { return steps > 0 && is_held ? Held::kYes : Held::kNo; };
+  // A row of nothing is not measured, and says what is lacking.
+  const auto row = [](FidelityRow measured, std::size_t compared, bool is_held,
+                      const char* lacking) {
+    measured.held = is_held ? Held::kYes : Held::kNo;
+    if (compared > 0) return measured;
+    measured.figure.clear();
+    measured.how = lacking;
+    measured.held = Held::kNotMeasured;
+    return measured;
+  };
+  const char* const kNoFree = "the records have no run in which the arm touches nothing";
   std::vector<FidelityRow> rows;
   rows.push_back(
-      {"arm over the recorded steps", "1 mrad, 0.5 mm",
-       fmt::format("{:.2g} mrad, {:.2g} mm in {}", 1e3 * free.joint, 1e3 * free.tool, over),
-       "imported scenes under the recorded actions, runs in which it touches nothing",
-       held(free.joint <= kJoint && free.tool <= kTool), std::move(others)});
-  rows.push_back({"fingers, closing freely",
-                  "0.3 mm",
-                  fmt::format("{:.2g} mm in {}", 1e3 * free.finger, over),
-                  "the same runs",
-                  held(free.finger <= kFinger),
-                  {}});
-  rows.push_back({"drawers, doors and knobs", "2 mm, 2 mrad",
-                  fmt::format("{:.2g} m or rad in {} joints", fixture, joints),
-                  "where the recorded runs end, those in which the arm pushes as well",
-                  runs > 0 && fixture <= kFixture ? Held::kYes : Held::kNo, std::move(moved)});
+      row({"arm over the recorded steps", "1 mrad, 0.5 mm",
+           fmt::format("{:.2g} mrad, {:.2g} mm in {}", 1e3 * free.joint, 1e3 * free.tool, over),
+           "imported scenes under the recorded actions, runs in which it touches nothing",
+           Held::kNo, std::move(others)},
+          steps, free.joint <= kJoint && free.tool <= kTool, kNoFree));
+  rows.push_back(row({"fingers, closing freely",
+                      "0.3 mm",
+                      fmt::format("{:.2g} mm in {}", 1e3 * free.finger, over),
+                      "the same runs",
+                      Held::kNo,
+                      {}},
+                     steps, free.finger <= kFinger, kNoFree));
+  rows.push_back(row({"drawers, doors and knobs", "2 mm, 2 mrad",
+                      fmt::format("{:.2g} m or rad in {} joints", fixture, joints),
+                      "where the recorded runs end, those in which the arm pushes as well",
+                      Held::kNo, std::move(moved)},
+                     joints, fixture <= kFixture,
+                     "the records say of no joint of a fixture where its run ends"));
   return rows;
 }
 

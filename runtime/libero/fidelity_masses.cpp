@@ -91,8 +91,8 @@ Result<FidelityRow> masses_row(Imported& imported, const Records& records) {
       const auto place = wanted["ipos"].get<std::vector<double>>();
       const double m = std::abs(got - kg) / kg, c = (at - Vec3(place.data())).norm(),
                    i = (about - moments).norm() / moments.norm();
-      mass = std::max(mass, m), centre = std::max(centre, c), inertia = std::max(inertia, i);
-      if (std::max({m, c, i}) > kBar)
+      mass = worse(mass, m), centre = worse(centre, c), inertia = worse(inertia, i);
+      if (!(worse(worse(m, c), i) <= kBar))
         row.others.push_back(
             fmt::format("{}: mass {:.1g}, centre {:.1g} m, inertia {:.1g}", cls, m, c, i));
     };
@@ -133,9 +133,14 @@ Result<FidelityRow> masses_row(Imported& imported, const Records& records) {
       }
     }
   }
+  if (seen.empty()) {
+    row.how = "the records have no thing of the import";
+    row.held = Held::kNotMeasured;
+    return row;
+  }
   row.figure = fmt::format("{} kinds of things: mass {:.1g}, inertia {:.1g}, centre {:.1g} m",
                            seen.size(), mass, inertia, centre);
-  row.held = !seen.empty() && row.others.empty() ? Held::kYes : Held::kNo;
+  row.held = row.others.empty() ? Held::kYes : Held::kNo;
   return row;
 }
 

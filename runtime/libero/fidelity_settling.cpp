@@ -12,7 +12,8 @@ namespace probe::libero {
 namespace {
 
 double angle_between(const Quat& a, const Quat& b) {
-  return 2 * std::acos(std::min(1.0, std::abs(a.dot(b))));
+  const double dot = std::abs(a.dot(b));
+  return dot > 1 ? 0 : 2 * std::acos(dot);  // no number stays none
 }
 
 // The plan has objects in the order of their roles.
@@ -100,8 +101,8 @@ Result<FidelityRow> settling_row(Imported& imported, const Records& records, std
         const Pose &ours = stage->objects()[places[k]], &theirs = states[i].objects[k];
         const double d = (ours.position - theirs.position).norm();
         const double a = angle_between(ours.rotation, theirs.rotation);
-        const double off = std::max(d / kPlace, a / kTurn);
-        if (off > worst) worst = off, distance = d, angle = a, which = places[k];
+        const double off = worse(d / kPlace, a / kTurn);
+        if (!(off <= worst)) worst = off, distance = d, angle = a, which = places[k];
       }
       distances.push_back(distance);
       if (worst <= 1) {

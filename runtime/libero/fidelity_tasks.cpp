@@ -120,8 +120,13 @@ Result<FidelityRow> tasks_row(Imported& imported, const std::string& original,
     if (!differs.empty()) row.others.push_back(task.key() + ": " + differs);
     return {};
   }));
+  if (all == 0) {
+    row.how = "the folder has no task";
+    row.held = Held::kNotMeasured;
+    return row;
+  }
   row.figure = fmt::format("{} of {}", all - row.others.size(), all);
-  row.held = all > 0 && row.others.empty() ? Held::kYes : Held::kNo;
+  row.held = row.others.empty() ? Held::kYes : Held::kNo;
   return row;
 }
 
@@ -131,12 +136,16 @@ Result<FidelityRow> starts_row(Imported& imported, const std::string& original) 
                   "",        "what plans begin with against the stored states, read once more",
                   Held::kNo, {}};
   PROBE_ASSIGN(const fs::path root, root_of(original));
-  std::size_t starts = 0, equal = 0;
+  std::size_t starts = 0, equal = 0, missing = 0;  // tasks without any start
   double place = 0, turn = 0;
   PROBE_TRY(each_task(root, [&](const OriginalTask& task) -> Status {
     PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite->folder));
     const auto index = plan->find_task(task.name());
-    if (!index) return {};
+    if (!index) {
+      ++missing;
+      row.others.push_back(task.key() + ": is not in the import");
+      return {};
+    }
     const plan::TaskRecord& record = plan->tasks()[*index];
     const plan::SceneRecord& scene = plan->scenes()[record.scene];
     // Fixtures of the scene are those of the problem in their order, but for what carries all.
@@ -162,7 +171,10 @@ Result<FidelityRow> starts_row(Imported& imported, const std::string& original) 
     const auto episodes = plan->episodes(record);
     const auto bodies = plan->bodies(record);
     for (std::size_t i = 0; i < states.starts.size(); ++i, ++starts) {
-      if (i >= episodes.size()) continue;
+      if (i >= episodes.size()) {
+        row.others.push_back(fmt::format("{}, start {}: is not in the import", task.key(), i));
+        continue;
+      }
       const StartState& stored = states.starts[i];
       double here_place = 0, here_turn = 0;
       bool is_whole = true;
@@ -174,27 +186,27 @@ Result<FidelityRow> starts_row(Imported& imported, const std::string& original) 
         is_whole = is_whole && at < placed.size();
         if (at >= placed.size()) continue;
         for (std::size_t c = 0; c < 3; ++c)
-          here_place = std::max(here_place,
-                                std::abs(placed[at].position[c] - stored.objects[k].position[c]));
+          here_place =
+              worse(here_place, std::abs(placed[at].position[c] - stored.objects[k].position[c]));
         const auto &p = placed[at].rotation, &q = stored.objects[k].rotation;
         // Either sign is the same turn, and a plan's quaternion has length 1.
         double length = 0, dot = 0;
         for (std::size_t c = 0; c < 4; ++c) length += q[c] * q[c], dot += p[c] * q[c];
         for (std::size_t c = 0; c < 4; ++c)
-          here_turn = std::max(here_turn,
-                               std::abs(p[c] - std::copysign(1, dot) * q[c] / std::sqrt(length)));
+          here_turn =
+              worse(here_turn, std::abs(p[c] - std::copysign(1, dot) * q[c] / std::sqrt(length)));
       }
       const auto arm = plan->joints(scene, episodes[i]);
       for (std::size_t k = 0; k < 7; ++k)
-        here_turn = std::max(here_turn, std::abs(arm[k] - stored.arm[k]));
-      here_place = std::max(
-          {here_place, std::abs(arm[7] - stored.fingers[0]), std::abs(arm[8] + stored.fingers[1])});
+        here_turn = worse(here_turn, std::abs(arm[k] - stored.arm[k]));
+      here_place = worse(here_place, std::abs(arm[7] - stored.fingers[0]));
+      here_place = worse(here_place, std::abs(arm[8] + stored.fingers[1]));
       const std::vector<double> joints = plan::joint_starts_of(plan->tables(), scene, episodes[i]);
       is_whole = is_whole && joints.size() == stored.joints.size();
       for (std::size_t k = 0; k < std::min(joints.size(), stored.joints.size()); ++k)
-        here_turn = std::max(here_turn, std::abs(joints[k] - stored.joints[k]));
-      place = std::max(place, here_place);
-      turn = std::max(turn, here_turn);
+        here_turn = worse(here_turn, std::abs(joints[k] - stored.joints[k]));
+      place = worse(place, here_place);
+      turn = worse(turn, here_turn);
       if (is_whole && here_place <= kPlace && here_turn <= kTurn) {
         ++equal;
       } else {
@@ -203,8 +215,15 @@ Result<FidelityRow> starts_row(Imported& imported, const std::string& original) 
     }
     return {};
   }));
+  if (starts + missing == 0) {
+    row.how = "the folder has no stored start";
+    row.held = Held::kNotMeasured;
+    return row;
+  }
   row.figure = fmt::format("{} of {}; at most {:.1g} m, {:.1g} rad", equal, starts, place, turn);
-  row.held = starts > 0 && equal == starts ? Held::kYes : Held::kNo;
+  if (missing > 0)
+    row.figure += fmt::format("; {} task{} not imported", missing, missing == 1 ? "" : "s");
+  row.held = missing == 0 && equal == starts ? Held::kYes : Held::kNo;
   return row;
 }
 

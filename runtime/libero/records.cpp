@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 
@@ -34,7 +35,7 @@ bool is_of(const Json& json, JsonKind kind) {
     case JsonKind::kText:
       return json.is_string();
     case JsonKind::kNumber:
-      return json.is_number();
+      return json.is_number() && std::isfinite(json.get<double>());
   }
   return false;
 }
@@ -48,7 +49,7 @@ std::string_view word_of(JsonKind kind) {
     case JsonKind::kText:
       return "a text";
     case JsonKind::kNumber:
-      return "a number";
+      return "a finite number";
   }
   return "";
 }
@@ -90,13 +91,13 @@ Result<std::vector<double>> numbers(const Json& of, const std::string& key, std:
     // A matrix may be written row by row.
     if (number.is_array()) {
       for (const Json& inner : number) {
-        if (!inner.is_number())
+        if (!is_of(inner, JsonKind::kNumber))
           return Failure{Fault::kUsage, "`" + key + "` has what is no number", where};
         out.push_back(inner.get<double>());
       }
       continue;
     }
-    if (!number.is_number())
+    if (!is_of(number, JsonKind::kNumber))
       return Failure{Fault::kUsage, "`" + key + "` has what is no number", where};
     out.push_back(number.get<double>());
   }
@@ -147,23 +148,33 @@ Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) co
   PROBE_ASSIGN(const std::string bytes, text("libero_settled.npz"));
   const std::span<const std::uint8_t> archive(reinterpret_cast<const std::uint8_t*>(bytes.data()),
                                               bytes.size());
-  const auto member =
-      read_zip_member(archive, task.key() + ".npy", std::size_t{1} << 24, "libero_settled.npz");
+  PROBE_ASSIGN(
+      const std::optional<std::string> member,
+      find_zip_member(archive, task.key() + ".npy", std::size_t{1} << 24, "libero_settled.npz"));
   if (!member) return states;  // of some tasks alone
-  PROBE_ASSIGN(const wire::Array rows, wire::from_npy(wire::Bytes(member->begin(), member->end())));
-  if (rows.shape.size() != 2)
-    return Failure{Fault::kUsage, "expected a row a start", "libero_settled.npz: " + task.key()};
+  const std::string where = "libero_settled.npz: " + task.key();
+  const auto read = wire::from_npy(wire::Bytes(member->begin(), member->end()));
+  if (!read) return Failure{Fault::kUsage, read.failure().message, where};
+  const wire::Array& rows = *read;
+  if (rows.dtype != "<f8")
+    return Failure{Fault::kUsage, fmt::format("expected float64, `<f8`, found `{}`", rows.dtype),
+                   where};
+  if (rows.shape.size() != 2) return Failure{Fault::kUsage, "expected a row a start", where};
   const auto count = static_cast<std::size_t>(rows.shape[0]);
   const auto width = static_cast<std::size_t>(rows.shape[1]);
   const std::size_t objects = task.said["objects"].size();
-  if (rows.bytes.size() != count * width * sizeof(double) || width < 10 + 7 * objects)
-    return Failure{Fault::kUsage, "its rows are no states of this task",
-                   "libero_settled.npz: " + task.key()};
-  std::vector<double> values(count * width);
-  std::memcpy(values.data(), rows.bytes.data(), rows.bytes.size());
   std::size_t joints = 0;
   for (const auto& [name, fixture] : task.said["fixtures"].items())
     joints += fixture["joints"].size();
+  if (rows.bytes.size() != count * width * sizeof(double) || width < 10 + 7 * objects + joints)
+    return Failure{Fault::kUsage, "its rows are no states of this task", where};
+  std::vector<double> values(count * width);
+  if (!values.empty()) std::memcpy(values.data(), rows.bytes.data(), rows.bytes.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i]))
+      return Failure{Fault::kUsage, fmt::format("start {} has what is no number", i / width),
+                     where};
+  }
   for (std::size_t r = 0; r < count; ++r) {
     const double* q = &values[r * width] + 1;
     RecordedState& state = states.emplace_back();
@@ -213,7 +224,7 @@ Result<RecordedTable> read_table(const std::string& text, const std::string& whe
     for (const std::string_view cell : cells) {
       double value = 0;
       const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-      if (error != std::errc() || at != cell.data() + cell.size())
+      if (error != std::errc() || at != cell.data() + cell.size() || !std::isfinite(value))
         return Failure{Fault::kUsage, fmt::format("expected a number, found `{}`", cell), place};
       row.push_back(value);
     }

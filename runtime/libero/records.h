@@ -48,7 +48,8 @@ class Records {
   Result<std::string> text(const std::string& file) const;
   Result<Json> json(const std::string& file) const;
 
-  // libero_settled.npz: by start; empty where the archive has none of this task.
+  // libero_settled.npz: by start; empty where the archive has none of this task. Fails (kUsage) on
+  // rows that are not float64, that are narrower than the task's state or not finite.
   Result<std::vector<RecordedState>> settled(const RecordedTask& task) const;
 
  private:
@@ -56,7 +57,7 @@ class Records {
   std::vector<RecordedTask> tasks_;
 };
 
-// A table with a header, every cell a number.
+// A table with a header, every cell a finite number.
 struct RecordedTable {
   std::vector<std::string> names;
   std::vector<std::vector<double>> rows;

@@ -49,6 +49,15 @@ struct CloseZip {
 
 Result<std::string> read_zip_member(std::span<const std::uint8_t> archive, std::string_view ending,
                                     std::size_t most, const std::string& path) {
+  PROBE_ASSIGN(std::optional<std::string> found, find_zip_member(archive, ending, most, path));
+  if (found) return std::move(*found);
+  return Failure{Fault::kUsage,
+                 fmt::format("expected one `{}` in the zip archive, found 0", ending), path};
+}
+
+Result<std::optional<std::string>> find_zip_member(std::span<const std::uint8_t> archive,
+                                                   std::string_view ending, std::size_t most,
+                                                   const std::string& path) {
   const auto wrong = [&](std::string what) {
     return Failure{Fault::kUsage, std::move(what), path};
   };
@@ -83,6 +92,7 @@ Result<std::string> read_zip_member(std::span<const std::uint8_t> archive, std::
     if (unzGetFilePos64(zip.get(), &wanted) != UNZ_OK)
       return wrong("the directory of the zip archive cannot be read");
   }
+  if (found == 0) return std::optional<std::string>();
   if (found != 1)
     return wrong(fmt::format("expected one `{}` in the zip archive, found {}", ending, found));
   if (unzGoToFilePos64(zip.get(), &wanted) != UNZ_OK)
@@ -117,7 +127,7 @@ Result<std::string> read_zip_member(std::span<const std::uint8_t> archive, std::
     return wrong(
         fmt::format("`{}` is not what it was when it was packed: another checksum", ending));
   bytes.resize(size);
-  return bytes;
+  return std::optional(std::move(bytes));
 }
 
 }  // namespace probe::libero

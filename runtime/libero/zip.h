@@ -1,6 +1,7 @@
 // One file out of a zip archive in memory. Minizip stops here.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,5 +17,9 @@ namespace probe::libero {
 // checksum that is not the directory's.
 Result<std::string> read_zip_member(std::span<const std::uint8_t> archive, std::string_view ending,
                                     std::size_t most, const std::string& path);
+// The same where there may be none: nothing where the archive is whole and has no such member.
+Result<std::optional<std::string>> find_zip_member(std::span<const std::uint8_t> archive,
+                                                   std::string_view ending, std::size_t most,
+                                                   const std::string& path);
 
 }  // namespace probe::libero

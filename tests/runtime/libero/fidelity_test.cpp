@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -167,12 +168,43 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
   REQUIRE(refused(classes, classes_json(0.0288)).empty());
   CHECK(refused("libero_settled.npz", test::stored_zip("libero_90_00.npy", test::npy({{1, 2}})))
             .find("its rows are no states of this task") != std::string::npos);
+  // Rows of the state alone, without the fixture's joint.
+  CHECK(refused("libero_settled.npz",
+                test::stored_zip("libero_90_00.npy", test::npy({std::vector<double>(31, 1.0)}))) ==
+        "libero_settled.npz: libero_90_00: its rows are no states of this task");
+  std::string whole = test::npy({std::vector<double>(32, 1.0)});
+  for (const char* dtype : {"<i8", ">f8", "<f4"}) {
+    std::string other = whole;
+    other.replace(other.find("<f8"), 3, dtype);
+    if (std::string_view(dtype) == "<f4") other.resize(other.size() - 32 * 4);
+    const std::string said =
+        refused("libero_settled.npz", test::stored_zip("libero_90_00.npy", other));
+    CAPTURE(said);
+    CHECK(said.starts_with("libero_settled.npz: libero_90_00: "));
+    CHECK(said.find(fmt::format("`{}`", dtype)) != std::string::npos);
+  }
+  CHECK(refused("libero_settled.npz",
+                test::stored_zip("libero_90_00.npy",
+                                 test::npy({std::vector<double>(32, 1.0),
+                                            std::vector<double>(32, std::nan(""))}))) ==
+        "libero_settled.npz: libero_90_00: start 1 has what is no number");
+  std::string damaged = test::stored_zip("libero_90_00.npy", whole);
+  damaged[damaged.find("<f8") + 200] ^= 1;
+  CHECK(refused("libero_settled.npz", damaged)
+            .find("is not what it was when it was packed: another checksum") != std::string::npos);
+  CHECK(refused("libero_settled.npz", "PK").find("no zip archive") != std::string::npos);
+  CHECK(refused("libero_settled.npz", test::stored_zip("libero_90_00.npy", "no array"))
+            .starts_with("libero_settled.npz: libero_90_00: a .npy array"));
   fs::remove(folder.root / "records/libero_settled.npz");
   folder.write("records/reference/libero_90_00_osc.csv", "step,a0\n1,2,3\n");
   CHECK(refused("reference/osc_unit_libero_90_00.json", "[{\"J\":[1]}]") ==
         "reference/osc_unit_libero_90_00.json: there is no `q`");
   CHECK(refused("reference/osc_unit_libero_90_00.json", "[]") ==
         "reference/libero_90_00_osc.csv:2: expected 2 cells, found 3");
+  for (const char* number : {"nan", "inf", "-inf"}) {
+    CHECK(refused("reference/libero_90_00_osc.csv", fmt::format("step,a0\n1,{}\n", number)) ==
+          fmt::format("reference/libero_90_00_osc.csv:2: expected a number, found `{}`", number));
+  }
   options.records.clear();
   options.original = (folder.root / "assets").string();
   CHECK(measure_fidelity(options).failure().message ==
@@ -180,6 +212,51 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
   options.original = folder.root.string();
   options.import = (folder.root / "assets").string();
   CHECK(measure_fidelity(options).failure().message == "the import has no such suite");
+}
+
+TEST_CASE("where nothing was compared nothing is held and nothing is missed") {
+  const test::SmallFolder folder;
+  REQUIRE(folder.import().ok());
+  folder.write("records/libero_tasks.json", tasks_json("put a cup in the drawer and close it"));
+  folder.write("records/reference/osc_unit_libero_90_00.json", "[]");
+  folder.write("records/reference/libero_90_00_osc.csv",
+               "step,a0,a1,a2,a3,a4,a5,a6,q1,q2,q3,q4,q5,q6,q7,f1,f2,tcp_x,tcp_y,tcp_z\n");
+  const auto rows = measure_fidelity(small_options(folder));
+  REQUIRE_MESSAGE(rows.ok(), (rows.ok() ? "" : to_text(rows.failure())));
+  for (const char* what : {"torques of given states", "arm over the recorded steps",
+                           "fingers, closing freely", "drawers, doors and knobs"}) {
+    CAPTURE(what);
+    CHECK(row_of(*rows, what).held == Held::kNotMeasured);
+    CHECK(row_of(*rows, what).figure == "");
+  }
+}
+
+TEST_CASE("the starts of a task that is not in the import are missed") {
+  const test::SmallFolder folder;
+  REQUIRE(folder.import().ok());
+  const std::string other = "KITCHEN_SCENE1_put_a_lid_in_the_drawer";
+  for (const auto& [of, ending] :
+       {std::pair{"bddl_files", ".bddl"}, {"init_files", ".pruned_init"}}) {
+    const fs::path in = folder.root / of / "libero_90";
+    fs::copy_file(in / (std::string(test::kSmallTask) + ending), in / (other + ending));
+  }
+  FidelityOptions options = small_options(folder);
+  options.records.clear();
+  const auto rows = measure_fidelity(options);
+  REQUIRE_MESSAGE(rows.ok(), (rows.ok() ? "" : to_text(rows.failure())));
+  const FidelityRow& starts = row_of(*rows, "starts");
+  CHECK(starts.held == Held::kNo);
+  CHECK(starts.figure.ends_with("; 1 task not imported"));
+  REQUIRE(starts.others.size() == 1);
+  CHECK(starts.others[0].ends_with(": is not in the import"));
+}
+
+TEST_CASE("a deviation that is no number is worse than any") {
+  const double none = std::nan("");
+  for (const double found : {worse(1, none), worse(none, 1), worse(worse(0, none), 5)})
+    CHECK_FALSE(found <= 1e300);
+  CHECK(worse(1, 2) == 2);
+  CHECK(worse(2, 1) == 2);
 }
 
 TEST_CASE("fidelity of the reference's import, fixtures where the records have them") {
