@@ -1,4 +1,4 @@
-// vlaprobe libero import
+// vlaprobe libero import, vlaprobe libero fidelity
 #include "runtime/base/asset_root.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
