@@ -54,6 +54,10 @@ std::set<std::string_view> roles_of_things(const Context& context) {
 
 }  // namespace
 
+bool is_taken_word(std::string_view word) {
+  return std::ranges::find(kTaken, word) != kTaken.end();
+}
+
 std::optional<RoleId> find_role(const Context& context, std::string_view word) {
   if (word == "source") return RoleId::kSource;
   if (word == "target") return RoleId::kTarget;
@@ -107,7 +111,7 @@ void define_roles(Context& context) {
                              things.contains(node.name.text)});
     if (node.name.text.empty()) continue;  // a syntax error, reported
     const std::string_view name = node.name.text;
-    const bool is_taken = std::find(kTaken.begin(), kTaken.end(), name) != kTaken.end();
+    const bool is_taken = is_taken_word(name);
     const bool is_statement = syntax::find_statement(syntax::Block::kTask, name) != nullptr;
     const auto object = context.symbols.objects.peek(name);
     if (!is_taken && !is_statement && !object) continue;

@@ -9,6 +9,9 @@
 
 namespace probe::sema {
 
+// A word that stands for bodies wherever a role may stand: nothing else is called so.
+bool is_taken_word(std::string_view word);
+
 // Source, target or a declared role; nothing for any other word.
 std::optional<RoleId> find_role(const Context& context, std::string_view word);
 // The same of a finished model.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "compiler/define/role.h"
 #include "compiler/syntax/lexer.h"
+#include "compiler/syntax/words.h"
 
 namespace probe::language {
 namespace {
@@ -22,14 +24,26 @@ void add_all(const Snapshot& snapshot, const Symbol& symbol, std::vector<FilePla
   }
 }
 
+// Roles, measures, keywords, and the words that stand for bodies.
+bool is_word_of_language(std::string_view name) {
+  for (std::size_t i = 0; i < kKindCount; ++i) {
+    if (Index::is_built_in(static_cast<Kind>(i), name)) return true;
+  }
+  const std::vector<std::string_view> inner = syntax::inner_words();
+  return syntax::is_declaration_word(name) ||
+         std::ranges::any_of(syntax::statement_words(),
+                             [&](const auto& word) { return word.word == name; }) ||
+         std::ranges::find(inner, name) != inner.end() || sema::is_taken_word(name);
+}
+
+}  // namespace
+
 Result<Symbol> symbol_at(const Snapshot& snapshot, FileId file, std::uint32_t offset) {
   const Place* place = snapshot.index().at(file, offset);
   const auto symbol = place == nullptr ? std::nullopt : snapshot.index().symbol(*place);
   if (!symbol) return Failure{Fault::kUsage, "no name is declared of what stands here", ""};
   return *symbol;
 }
-
-}  // namespace
 
 std::vector<FilePlace> references(const Snapshot& snapshot, FileId file, std::uint32_t offset,
                                   const std::vector<const Snapshot*>& others) {
@@ -69,32 +83,51 @@ Result<Span> renamed_span(const Snapshot& snapshot, FileId file, std::uint32_t o
   return snapshot.index().at(file, offset)->span;
 }
 
-Status check_new_name(const Snapshot& snapshot, FileId file, std::uint32_t offset,
-                      const std::string& name) {
+Status check_new_name(const Snapshot& snapshot, const Symbol& symbol, const std::string& name) {
   const bool is_name = !name.empty() && syntax::is_letter(name.front()) &&
                        std::ranges::all_of(name, syntax::is_word);
   if (!is_name)
     return Failure{Fault::kUsage,
                    "a name is a letter, then letters, digits and `_`; `" + name + "` is none", ""};
-  PROBE_ASSIGN(Symbol symbol, symbol_at(snapshot, file, offset));
-  symbol.name = name;
-  const bool is_taken = !snapshot.index().declarations(symbol).empty() ||
-                        Index::is_built_in(symbol.kind, name);
-  if (is_taken)
-    return Failure{Fault::kUsage,
-                   "there is a " + std::string(info(symbol.kind).word) + " `" + name + "` already",
-                   ""};
+  // Whatever its kind and scope: it would take the name from others, or they from it.
+  for (const syntax::ParseResult& file : snapshot.files()) {
+    for (const Place& place : snapshot.index().places(file.file.id)) {
+      if (place.text != name) continue;
+      const std::string where =
+          snapshot.path(place.span.file) + ":" +
+          std::to_string(snapshot.range(place.span).begin.line + 1);
+      const bool is_same = place.declares && place.may_be.has(symbol.kind);
+      return Failure{Fault::kUsage,
+                     is_same ? "there is a " + std::string(info(symbol.kind).word) + " `" + name +
+                                   "` already: " + where
+                             : "`" + name + "` stands for something already: " + where,
+                     ""};
+    }
+  }
+  if (is_word_of_language(name))
+    return Failure{Fault::kUsage, "`" + name + "` is a word of the language", ""};
+  // What a `derive` makes is declared by no text.
+  if (snapshot.task(name) != nullptr)
+    return Failure{Fault::kUsage, "there is a task `" + name + "` already", ""};
   return {};
 }
 
-std::string new_mistake(const Snapshot& snapshot, const Unsaved& edited, const Setting& setting) {
+std::string new_mistake(const Snapshot& snapshot, const Symbol& symbol, const std::string& name,
+                        const Unsaved& edited, const Setting& setting) {
+  const std::string is = "`" + name + "`", was = "`" + symbol.name + "`";
   const auto after = Snapshot::analysed(snapshot.path(snapshot.root()), edited, setting);
-  if (after == nullptr) return {};
-  if (after->diagnostics().error_count() <= snapshot.diagnostics().error_count()) return {};
-  std::set<std::string> known;
+  if (after == nullptr) return snapshot.path(snapshot.root()) + " cannot be read";
+  std::multiset<std::string> known;
   for (const Diagnostic& item : snapshot.diagnostics().items()) known.insert(item.message);
   for (const Diagnostic& item : after->diagnostics().items()) {
-    if (item.severity == Severity::kError && !known.contains(item.message)) return item.message;
+    if (item.severity != Severity::kError) continue;
+    // What was wrong with it before is so under its other name.
+    std::string before = item.message;
+    for (std::size_t at = 0; (at = before.find(is, at)) != before.npos; at += was.size())
+      before.replace(at, is.size(), was);
+    const auto same = known.find(before);
+    if (same == known.end()) return item.message;
+    known.erase(same);
   }
   return {};
 }

@@ -27,12 +27,16 @@ std::vector<FilePlace> references(const Snapshot& snapshot, FileId file, std::ui
 // The name that would be renamed. Fails (kUsage) where nothing is, or nothing that a text declares.
 Result<Span> renamed_span(const Snapshot& snapshot, FileId file, std::uint32_t offset);
 
-// Whether a name may be called so. Fails (kUsage) saying why not: no name, or taken.
-Status check_new_name(const Snapshot& snapshot, FileId file, std::uint32_t offset,
-                      const std::string& name);
+// What the name at a place stands for. Fails (kUsage) where nothing does.
+Result<Symbol> symbol_at(const Snapshot& snapshot, FileId file, std::uint32_t offset);
+
+// Whether a symbol may be called so in a program. Fails (kUsage) saying why not: no name, a word of
+// the language, or a name that stands for anything there, of whatever kind and scope.
+Status check_new_name(const Snapshot& snapshot, const Symbol& symbol, const std::string& name);
 
 // What texts that are edited so say wrong and the present ones do not, as where a `derive` makes names of
 // the name that was changed. Empty when there is nothing.
-std::string new_mistake(const Snapshot& snapshot, const Unsaved& edited, const Setting& setting);
+std::string new_mistake(const Snapshot& snapshot, const Symbol& symbol, const std::string& name,
+                        const Unsaved& edited, const Setting& setting);
 
 }  // namespace probe::language

@@ -51,6 +51,41 @@ bool is_wanted(const Json& params, std::string_view kind) {
   });
 }
 
+// Whether a program that has texts which are edited is still right.
+Status check_renamed(const Workspace& workspace, const language::Snapshot& program,
+                     const language::Symbol& symbol, const std::string& name,
+                     const std::vector<language::FilePlace>& places,
+                     const language::Unsaved& edited) {
+  const std::string& root = program.path(program.root());
+  const auto before =
+      language::Snapshot::analysed(root, workspace.documents.texts(), workspace.setting());
+  if (before == nullptr) return Failure{Fault::kUsage, root + " cannot be read", ""};
+  for (const syntax::ParseResult& file : before->files()) {
+    if (!file.ok)
+      return Failure{Fault::kUsage,
+                     before->path(file.file.id) + " has mistakes that hide names: mend them first",
+                     ""};
+  }
+  PROBE_TRY(language::check_new_name(*before, symbol, name));
+  if (symbol.kind != language::Kind::kVariable) {
+    for (const language::Place* place : before->index().all(symbol)) {
+      const bool is_edited = std::ranges::any_of(places, [&](const language::FilePlace& one) {
+        return one.path == before->path(place->span.file) && one.span.begin == place->span.begin;
+      });
+      if (!is_edited)
+        return Failure{Fault::kUsage,
+                       "another `" + symbol.name + "` stands in " +
+                           before->path(place->span.file),
+                       ""};
+    }
+  }
+  const std::string mistake =
+      language::new_mistake(*before, symbol, name, edited, workspace.setting());
+  if (!mistake.empty())
+    return Failure{Fault::kUsage, "under the name `" + name + "`: " + mistake, ""};
+  return {};
+}
+
 }  // namespace
 
 Result<Json> answer_formatting(Workspace& workspace, const Client&, const Json& params) {
@@ -76,8 +111,13 @@ Result<Json> answer_rename(Workspace& workspace, const Client&, const Json& para
   const std::string name = read_text(params, {"newName"});
   PROBE_ASSIGN(const Span span, language::renamed_span(at.snapshot(), at.file, at.offset));
   if (at.snapshot().sources().text(span) == name) return Json();
-  PROBE_TRY(language::check_new_name(at.snapshot(), at.file, at.offset, name));
+  PROBE_ASSIGN(const language::Symbol symbol,
+               language::symbol_at(at.snapshot(), at.file, at.offset));
   const std::vector<const language::Snapshot*> others = workspace.others();
+  if (!workspace.missed().empty()) {
+    return Failure{Fault::kUsage,
+                   "not every text of the folder was looked at: " + workspace.missed(), ""};
+  }
   const auto places = language::references(at.snapshot(), at.file, at.offset, others);
   Json changes = Json::object();
   std::map<std::string, std::vector<Replacement>> by_path;
@@ -101,10 +141,11 @@ Result<Json> answer_rename(Workspace& workspace, const Client&, const Json& para
       break;
     }
   }
-  const std::string mistake =
-      language::new_mistake(at.snapshot(), edited, workspace.setting());
-  if (!mistake.empty())
-    return Failure{Fault::kUsage, "under the name `" + name + "`: " + mistake, ""};
+  for (const language::Snapshot* snapshot : others) {
+    const bool is_edited = std::ranges::any_of(
+        by_path, [&](const auto& one) { return snapshot->find(one.first).has_value(); });
+    if (is_edited) PROBE_TRY(check_renamed(workspace, *snapshot, symbol, name, places, edited));
+  }
   return Json{{"changes", std::move(changes)}};
 }
 

@@ -112,6 +112,8 @@ class TextServer final : public Server {
     }
     const Answer answer = find_answer(method);
     if (answer == nullptr) return fail(id, kMethodNotFound, "there is no `" + method + "`");
+    // Not every editor tells of what changes on the disk, and an edit of old lines is a wrong one.
+    if (method == "textDocument/rename") touch("");
     const Result<Json> result = answer(workspace_, client_, params);
     if (!result) {
       const bool is_ours = result.failure().code != Fault::kUsage;

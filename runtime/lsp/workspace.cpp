@@ -206,27 +206,52 @@ bool Workspace::is_ours(const std::string& path) const {
   });
 }
 
-std::vector<std::string> Workspace::texts_in_folders() const {
-  constexpr std::size_t kMost = 1000;       // texts
+std::vector<std::string> Workspace::texts_in_folders() {
+  constexpr std::size_t kMost = 1000;         // texts
   constexpr std::size_t kMostLooked = 50000;  // entries
   constexpr int kDeepest = 12;
   std::vector<std::string> out;
   std::size_t looked = 0;
-  for (const std::string& folder : folders) {
+  missed_.clear();
+  struct Todo {
+    fs::path folder;
+    int depth = 0;
+  };
+  // What is hidden comes last: it may be large, and is seldom meant.
+  std::deque<Todo> todo;
+  for (const std::string& folder : folders) todo.push_front({folder, 0});
+  while (!todo.empty()) {
+    const Todo now = std::move(todo.front());
+    todo.pop_front();
     std::error_code error;
-    fs::recursive_directory_iterator at(
-        folder, fs::directory_options::skip_permission_denied, error);
-    for (const fs::recursive_directory_iterator end; !error && at != end; at.increment(error)) {
-      if (++looked > kMostLooked || out.size() == kMost) break;
+    fs::directory_iterator at(now.folder, error);
+    for (const fs::directory_iterator end; !error && at != end; at.increment(error)) {
+      const bool is_full = ++looked > kMostLooked;
+      if (is_full || out.size() > kMost) {
+        missed_ = is_full ? "it has more than " + std::to_string(kMostLooked) + " entries"
+                          : "it has more than " + std::to_string(kMost) + " texts";
+        todo.clear();
+        break;
+      }
       const std::string name = at->path().filename().string();
-      if (at->is_directory(error)) {
-        const bool is_skipped = name.starts_with('.') || name == "node_modules";
-        if (is_skipped || at.depth() >= kDeepest) at.disable_recursion_pending();
+      std::error_code ignored;  // what is gone meanwhile is neither
+      if (at->is_directory(ignored)) {
+        const bool is_skipped = at->is_symlink(ignored) || name == "node_modules" ||
+                                name == ".git" || name == ".hg" || name == ".svn";
+        if (is_skipped) continue;
+        if (now.depth >= kDeepest) {
+          missed_ = at->path().string() + " lies too deep";
+        } else if (name.starts_with('.')) {
+          todo.push_back({at->path(), now.depth + 1});
+        } else {
+          todo.push_front({at->path(), now.depth + 1});
+        }
         continue;
       }
-      if (name.ends_with(".probe") && at->is_regular_file(error))
+      if (name.ends_with(".probe") && at->is_regular_file(ignored))
         out.push_back(at->path().lexically_normal().string());
     }
+    if (error) missed_ = now.folder.string() + " cannot be read";
   }
   std::ranges::sort(out);
   const auto repeated = std::ranges::unique(out);
@@ -247,7 +272,10 @@ std::vector<const Snapshot*> Workspace::others() {
           std::ranges::any_of(others_, reaches);
       if (is_known) continue;
       auto other = Snapshot::parsed(path, unsaved, setting_);
-      if (other == nullptr) continue;
+      if (other == nullptr) {
+        missed_ = path + " cannot be read";
+        continue;
+      }
       std::erase_if(others_, [&](const auto& known) {
         return is_in(*other, known->path(known->root()));
       });

@@ -62,13 +62,16 @@ class Workspace {
   // Takes what a whole check said, of the program as it is now.
   static void take(Program& program, const WholeCheck& checked);
 
-  // Programs of texts in the folders that no open text reaches: trees and names alone.
+  // Every program that is open, and those of texts in the folders that no open text reaches: of
+  // these trees and names alone.
   std::vector<const language::Snapshot*> others();
+  // Why `others` lacks texts of the folders; empty when it has them all.
+  const std::string& missed() const { return missed_; }
   // Whether a file may be changed: it lies in a folder of the editor or is open.
   bool is_ours(const std::string& path) const;
 
  private:
-  std::vector<std::string> texts_in_folders() const;
+  std::vector<std::string> texts_in_folders();
   void carry_over(const Program& before, Program& after) const;
 
   language::Setting setting_;
@@ -77,6 +80,7 @@ class Workspace {
   bool is_all_touched_ = false;
   std::vector<std::unique_ptr<language::Snapshot>> others_;
   bool has_others_ = false;
+  std::string missed_;
 };
 
 }  // namespace probe::lsp

@@ -49,38 +49,39 @@ void add_libero(Verb app, int& exit) {
   auto options = std::make_shared<libero::ImportOptions>();
   Verb verb = app.add_subcommand("libero", "LIBERO's tasks from a folder of your own");
   verb.require_subcommand();
-  Verb import = verb.add_subcommand(
+  Verb imported = verb.add_subcommand(
       "import", "its problems, stored starts and models as texts, tables and assets");
-  import.footer(
+  imported.footer(
       "one line a suite, an object and a fixture, and for all that is odd or missing\n"
       "FILE has the header suite,task,fixture,x_m,y_m,z_m,qw,qx,qy,qz\n"
       "example: vlaprobe libero import LIBERO --robosuite robosuite -o libero");
-  import.add_option("DIR", options->from, "LIBERO's repository, or libero/libero in it").required();
-  import.add_option("-o,--out", options->to, "folder to make").required();
-  import.add_option("--robosuite", options->robosuite,
-                    "robosuite's repository, or models/assets in it");
-  import.add_option("--poses", options->poses,
-                    "table of where fixtures stand (default: the middle of their regions)");
-  import.refuse_empty_values();
-  import.callback([options, &exit] { exit = import_libero(*options);
-});
+  imported.add_option("DIR", options->from, "LIBERO's repository, or libero/libero in it")
+      .required();
+  imported.add_option("-o,--out", options->to, "folder to make").required();
+  imported.add_option("--robosuite", options->robosuite,
+                      "robosuite's repository, or models/assets in it");
+  imported.add_option("--poses", options->poses,
+                      "table of where fixtures stand (default: the middle of their regions)");
+  imported.refuse_empty_values();
+  imported.callback([options, &exit] { exit = import_libero(*options); });
 
-auto measured = std::make_shared<libero::FidelityOptions>();
-auto lists_all = std::make_shared<bool>(false);
-Verb fidelity = verb.add_subcommand(
-    "fidelity", "how an import compares with the original, row by row: bar, figure, how measured");
-fidelity.footer(
-    "what has no files to be measured against says so; exit 2 where a bar is missed\n"
-    "example: vlaprobe libero fidelity libero --libero LIBERO --records recorded");
-fidelity.add_option("DIR", measured->import, "folder that `libero import` made").required();
-fidelity.add_option("--libero", measured->original,
-                    "LIBERO's repository, or libero/libero in it: problems and stored starts");
-fidelity.add_option("--records", measured->records,
-                    "what was recorded of LIBERO's own program: libero_tasks.json and others");
-fidelity.add_option("--starts", measured->starts, "of a task that come to rest (default: 50)");
-fidelity.add_flag("--all", *lists_all, "all that is beyond a bar, not the first few");
-fidelity.refuse_empty_values();
-fidelity.callback([measured, lists_all, &exit] { exit = tell_fidelity(*measured, *lists_all); });
-}  // namespace probe::cli
+  auto measured = std::make_shared<libero::FidelityOptions>();
+  auto lists_all = std::make_shared<bool>(false);
+  Verb fidelity = verb.add_subcommand(
+      "fidelity",
+      "how an import compares with the original, row by row: bar, figure, how measured");
+  fidelity.footer(
+      "what has no files to be measured against says so; exit 2 where a bar is missed\n"
+      "example: vlaprobe libero fidelity libero --libero LIBERO --records recorded");
+  fidelity.add_option("DIR", measured->import, "folder that `libero import` made").required();
+  fidelity.add_option("--libero", measured->original,
+                      "LIBERO's repository, or libero/libero in it: problems and stored starts");
+  fidelity.add_option("--records", measured->records,
+                      "what was recorded of LIBERO's own program: libero_tasks.json and others");
+  fidelity.add_option("--starts", measured->starts, "of a task that come to rest (default: 50)");
+  fidelity.add_flag("--all", *lists_all, "all that is beyond a bar, not the first few");
+  fidelity.refuse_empty_values();
+  fidelity.callback([measured, lists_all, &exit] { exit = tell_fidelity(*measured, *lists_all); });
+}
 
 }  // namespace probe::cli

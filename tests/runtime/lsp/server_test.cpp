@@ -175,11 +175,103 @@ TEST_CASE("a name is found, referred to, highlighted, and renamed in every text"
   CHECK(edit["changes"].items().size() == 3);
   rename["newName"] = "other";
   CHECK(editor.ask("textDocument/rename", rename)["error"]["message"].text() ==
-        "there is a object `other` already");
+        "there is a object `other` already: " + user + ":2");
   rename["newName"] = "two words";
   CHECK(editor.ask("textDocument/rename", rename).contains("error"));
   CHECK(editor.ask("workspace/symbol", {{"query", "ball"}}).size() == 1);
   (void)second;
+}
+
+TEST_CASE("a rename that would change what another name stands for is refused") {
+  Folder folder;
+  const std::string path = folder.write("a.probe", "");
+  Editor editor(folder.path());
+  const std::string text =
+      "role helper\n"
+      "predicate near2(a: object, c: object) = distance(a, c) < 2cm and height(source) > 1m\n"
+      "predicate far2(b: object) = height(helper) > 1m and height(b) > 1m\n";
+  editor.open(path, text);
+  const auto renamed = [&](const std::string& what, const std::string& name) {
+    Json rename = Editor::at(path, place_of(text, what));
+    rename["newName"] = name;
+    return editor.ask("textDocument/rename", rename);
+  };
+  // A word of the language, a role, a parameter and a predicate, each of another kind or scope.
+  for (const char* name : {"source", "target", "surface", "none", "others", "height", "task", "helper", "b",
+                           "far2"}) {
+    CAPTURE(name);
+    CHECK(renamed("a: object", name).contains("error"));
+  }
+  CHECK(renamed("a: object", "helper")["error"]["message"].text() ==
+        "`helper` stands for something already: " + path + ":1");
+  CHECK(renamed("helper", "a").contains("error"));
+  CHECK(renamed("a: object", "thing")["changes"].items().size() == 1);
+}
+
+TEST_CASE("a rename is refused where another text of the folder has the name") {
+  Folder folder;
+  const std::string things = folder.write("things.probe", "object foo { friction 1 }\n");
+  const std::string user =
+      folder.write("user.probe", "use \"things.probe\"\nobject other like foo { friction 2 }\n");
+  const std::string second = folder.write(
+      "d.probe", "use \"things.probe\"\nobject foo2 like foo { friction 3 }\n");
+  Editor editor(folder.path());
+  editor.open(user, text_of_file(user));
+  Json rename = Editor::at(user, place_of(text_of_file(user), "foo"));
+  rename["newName"] = "foo2";
+  CHECK(editor.ask("textDocument/rename", rename)["error"]["message"].text() ==
+        "there is a object `foo2` already: " + second + ":2");
+  rename["newName"] = "foo3";
+  CHECK(editor.ask("textDocument/rename", rename)["changes"].items().size() == 3);
+}
+
+TEST_CASE("texts that are not open are read anew for a rename, and what cannot be read refuses it") {
+  Folder folder;
+  folder.write("things.probe", "object foo { friction 1 }\n");
+  const std::string user =
+      folder.write("user.probe", "use \"things.probe\"\nobject other like foo { friction 2 }\n");
+  const std::string second =
+      folder.write("b.probe", "use \"things.probe\"\nobject third like foo { friction 3 }\n");
+  Editor editor(folder.path());
+  editor.open(user, text_of_file(user));
+  Json rename = Editor::at(user, place_of(text_of_file(user), "foo"));
+  rename["newName"] = "bar";
+  CHECK(editor.ask("textDocument/rename", rename)["changes"][lsp::uri_of(second)][0]["range"]
+                  ["start"]["line"] == Json(1));
+  // No notice is sent.
+  folder.write("b.probe",
+               "use \"things.probe\"\n# one\n# two\nobject third like foo { friction 3 }\n");
+  folder.write("things.probe", "# a line more\nobject foo { friction 1 }\n");
+  const Json edit = editor.ask("textDocument/rename", rename);
+  CHECK(edit["changes"][lsp::uri_of(second)][0]["range"]["start"]["line"] == Json(3));
+  CHECK(edit["changes"][lsp::uri_of(folder.path() + "/things.probe")][0]["range"]["start"]
+            ["line"] == Json(1));
+  folder.write("b.probe", "use \"things.probe\"\nobject third like foo { friction\nobject\n");
+  CHECK(editor.ask("textDocument/rename", rename).contains("error"));
+}
+
+TEST_CASE("a rename finds texts in hidden folders, and is refused where not all were looked at") {
+  Folder folder;
+  const std::string user = folder.write(
+      "user.probe", "object foo { friction 1 }\nobject other like foo { friction 2 }\n");
+  const std::string hidden =
+      folder.write(".more/b.probe", "use \"../user.probe\"\nobject third like foo {}\n");
+  Editor editor(folder.path());
+  editor.open(user, text_of_file(user));
+  Json rename = Editor::at(user, place_of(text_of_file(user), "foo"));
+  rename["newName"] = "bar";
+  CHECK(editor.ask("textDocument/rename", rename)["changes"].contains(lsp::uri_of(hidden)));
+  std::string deep;
+  for (int i = 0; i < 14; ++i) deep += "f/";
+  folder.write(deep + "c.probe", "use \"" + user + "\"\nobject fourth like foo {}\n");
+  CHECK(editor.ask("textDocument/rename", rename)["error"]["message"].text().find(
+            "not every text of the folder was looked at: ") == 0);
+  fs::remove_all(fs::path(folder.path()) / "f");
+  CHECK(editor.ask("textDocument/rename", rename).contains("changes"));
+  for (int i = 0; i < 1000; ++i)
+    folder.write("many/t" + std::to_string(i) + ".probe", "");
+  CHECK(editor.ask("textDocument/rename", rename)["error"]["message"].text().find(
+            "not every text of the folder was looked at: ") == 0);
 }
 
 TEST_CASE("what the language or the library declares is not renamed") {
