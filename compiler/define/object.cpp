@@ -119,7 +119,8 @@ struct ObjectReader {
                      "an inertia is three moments, or six: xx, yy, zz, xy, xz, yz");
       return;
     }
-    Mass::Spread& spread = read.spread.emplace();
+    read.spread = Mass::Spread{};
+    Mass::Spread& spread = *read.spread;
     assign(spread.centre, centre);
     assign(spread.inertia, inertia);
     if (const auto wrong = plan::inertia_fault(spread.inertia))

@@ -61,10 +61,10 @@ std::vector<FilePlace> references(const Snapshot& snapshot, FileId file, std::ui
     }
   }
   std::ranges::sort(out, {}, [](const FilePlace& at) { return std::pair(at.path, at.range); });
-  const auto repeated = std::ranges::unique(out, {}, [](const FilePlace& at) {
-    return std::pair(at.path, at.range);
-  });
-  out.erase(repeated.begin(), repeated.end());
+  const auto is_same = [](const FilePlace& a, const FilePlace& b) {
+    return std::pair(a.path, a.range) == std::pair(b.path, b.range);
+  };
+  out.erase(std::unique(out.begin(), out.end(), is_same), out.end());
   return out;
 }
 

@@ -254,8 +254,7 @@ std::vector<std::string> Workspace::texts_in_folders() {
     if (error) missed_ = now.folder.string() + " cannot be read";
   }
   std::ranges::sort(out);
-  const auto repeated = std::ranges::unique(out);
-  out.erase(repeated.begin(), repeated.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
