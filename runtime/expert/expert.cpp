@@ -14,6 +14,7 @@
 #include "runtime/expert/joint_skill.h"
 #include "runtime/expert/pick_place.h"
 #include "runtime/expert/put_spot.h"
+#include "runtime/expert/put_under.h"
 #include "runtime/expert/servo.h"
 #include "runtime/expert/tidy_skills.h"
 #include "runtime/expert/waypoints.h"
@@ -52,7 +53,7 @@ class Expert final : public policy::Policy {
     solution_.clear();
     skill_ = 0;
     skill_begun_ = false;
-    has_opened_ = false;
+    has_opened_ = goes_under_ = false;
     hand_ = {};
     lack_.clear();
     return {};
@@ -260,6 +261,13 @@ class Expert final : public policy::Policy {
           skill_begun_ = false;
           continue;
         }
+        if (goes_under_) {
+          if (const auto action = under_.act(scene, means.view, *reach_, servo_)) return *action;
+          note(under_.lack());
+          ++skill_;
+          skill_begun_ = goes_under_ = false;
+          continue;
+        }
         const policy::Action action = hand_.act(is_new ? seen(observation) : scene, means);
         if (!hand_.is_over() || skill_ + 1 >= solution_.size()) return action;
         note_hand();
@@ -287,6 +295,10 @@ class Expert final : public policy::Policy {
       return begin_object_skill(view, seen(observation), solution_[skill_], observation);
     }
     if (needs_spot && errand.spots.empty() && opens_farther(view, skill)) return false;
+    // Where nothing comes from straight above, there may be a way from the side.
+    goes_under_ =
+        needs_spot && errand.spots.empty() && under_.begin(scene, view, skill, *reach_, ready_);
+    if (goes_under_) return true;
     errand.may_shove = errand.spots.empty();
     hand_.begin(errand, view, scene);
     if (needs_spot && errand.spots.empty())
@@ -364,6 +376,8 @@ class Expert final : public policy::Policy {
   bool skill_begun_ = false;
   bool has_opened_ = false;  // farther, for a put
   JointSkill joint_;
+  PutUnder under_;
+  bool goes_under_ = false;  // that is what puts
   PickPlace hand_;
   std::string usual_;  // the usual pick and place, as a skill is called
   std::string lack_;   // what kept the first skill that was not done from being done

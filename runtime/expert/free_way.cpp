@@ -9,31 +9,29 @@
 namespace probe::expert {
 namespace {
 
-constexpr double kWanted = 0.010;  // m of clearance
-constexpr double kGrows = 0.3;     // m of it for a m of way, from what there is at the ends
-constexpr double kStep = 0.02;     // m between looks
-constexpr double kTurn = 0.1;      // rad between looks
-constexpr double kRise = 0.04;     // m from one height that is tried to the next
+constexpr double kGrows = 0.3;  // m of it for a m of way, from what there is at the ends
+constexpr double kTurn = 0.1;   // rad between looks
+constexpr double kRise = 0.04;  // m from one height that is tried to the next
 constexpr int kHeights = 12;
 
 }  // namespace
 
 bool FreeLine::is_free(const Pose& from, const Pose& to) const {
-  const double at_start = around->clearance(from, balls, kWanted);
-  const double at_end = around->clearance(to, balls, kWanted);
+  const double at_start = around->clearance(from, balls, wanted_room);
+  const double at_end = around->clearance(to, balls, wanted_room);
   const double whole = (to.position - from.position).norm();
   Pose at = from;
   for (int i = 0; i < 400; ++i) {
     const robot::PoseError left = robot::pose_error(at, to);
     if (left.position < 1e-6 && left.rotation < 1e-6) return true;
     // Turns go along with the way.
-    const double share = std::min(1.0, kStep / std::max(left.position, 1e-9));
+    const double share = std::min(1.0, step / std::max(left.position, 1e-9));
     const double turn = left.position > 1e-6 ? std::max(share * left.rotation, 1e-3) : kTurn;
-    at = stepped(at, to, kStep, turn);
+    at = stepped(at, to, step, turn);
     const double gone = (at.position - from.position).norm();
-    const double wanted = std::min({kWanted, at_start - 1e-6 + kGrows * gone,
+    const double wanted = std::min({wanted_room, at_start - 1e-6 + kGrows * gone,
                                     at_end - 1e-6 + kGrows * (whole - std::min(gone, whole))});
-    if (around->clearance(at, balls, kWanted) < wanted) return false;
+    if (around->clearance(at, balls, wanted_room) < wanted) return false;
   }
   return false;
 }

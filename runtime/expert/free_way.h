@@ -13,6 +13,8 @@ namespace probe::expert {
 struct FreeLine {
   const Surroundings* around = nullptr;
   std::span<const Ball> balls;
+  double wanted_room = 0.010;  // m of clearance, where the ends have as much
+  double step = 0.02;          // m between looks
   bool is_free(const Pose& from, const Pose& to) const;
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/expert/around_solid.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -16,7 +17,6 @@ constexpr double kRoom = 0.0025;        // m between the hand and what it does n
 constexpr double kRoomyEnough = 0.012;  // m; more earns nothing
 constexpr std::array kBeside = {0.014, 0.009,
                                 0.006};  // m between an open finger and the handle, a side
-constexpr double kDeepest = 0.020;       // m of a handle that the tool centre point goes down
 constexpr double kTipUnder = 0.012;      // m of the fingertips behind the point that they push at
 // Cosines of 72 and 59 degrees: closing lines nearly across the way down, and where there are none.
 constexpr double kUpright = 0.3, kLessUpright = 0.52;
@@ -32,52 +32,9 @@ constexpr double kKnob = 0.03;  // m from the axis: what is nearer is turned abo
 constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half width and height
 constexpr int kLooks = 5;                                      // at the way of the part
 
-// From a point in it to its face.
-double way_out(const Solid& solid, const Pose& pose, const Vec3& from, const Vec3& direction) {
-  const Vec3 own = pose.rotation.conjugate() * direction;
-  const Vec3 at = pose.inverse().apply(from) - solid.center();
-  double least = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    if (std::abs(own[i]) < 1e-6) continue;
-    const double face = own[i] > 0 ? solid.half()[i] : -solid.half()[i];
-    least = std::min(least, (face - at[i]) / own[i]);
-  }
-  return least;
-}
-
-double half_along(const Solid& solid, const Pose& pose, const Vec3& direction) {
-  const Vec3 own = pose.rotation.conjugate() * direction;
-  return own.cwiseAbs().dot(solid.half());
-}
-
 double closed_half(const robot::HandShape& hand) {
   const double thick = hand.outside_at(hand.tip_below - kTipUnder) - hand.opening_half;
   return std::max(thick, 0.004) + 0.5 * hand.thinnest;
-}
-
-Quat frame_of(const Vec3& down, const Vec3& closing) {
-  Mat3 m;
-  m.col(0) = down;
-  m.col(1) = closing;
-  m.col(2) = down.cross(closing);
-  return Quat(m).normalized();
-}
-
-// Ways for the hand to come: from above, from the sides that the part has, and between.
-std::vector<Vec3> ways_to(const Pose& pose) {
-  std::vector<Vec3> ways = {-Vec3::UnitZ()};
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 axis = pose.rotation * Vec3::Unit(i);
-    if (std::abs(axis.z()) > 0.5) continue;
-    for (const double sign : {1.0, -1.0}) {
-      const Vec3 flat = Vec3(sign * axis.x(), sign * axis.y(), 0).normalized();
-      ways.push_back(flat);
-      ways.push_back((flat - Vec3::UnitZ()).normalized());
-      ways.push_back((flat - 0.5 * Vec3::UnitZ()).normalized());
-      ways.push_back((0.5 * flat - Vec3::UnitZ()).normalized());
-    }
-  }
-  return ways;
 }
 
 class Search {
@@ -163,28 +120,8 @@ class Search {
 
   void grasps(int s) {
     const Solid& solid = part_->solids[static_cast<std::size_t>(s)];
-    const Pose& pose = part_->pose;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 axis = pose.rotation * Vec3::Unit(i);
-      for (const Vec3& down : ways_) {
-        if (std::abs(axis.dot(down)) > upright_) continue;
-        const Vec3 closing = (axis - axis.dot(down) * down).normalized();
-        const double half = half_along(solid, pose, closing);
-        if (half > p_.hand.opening_half - 0.006 || 2 * half < p_.hand.thinnest) continue;
-        const Vec3 along = down.cross(closing);
-        const Vec3 middle = pose.apply(solid.center());
-        const double slack =
-            std::max(0.0, way_out(solid, pose, middle, along) - p_.hand.finger_half);
-        for (const double share : {0.0, 0.6, -0.6}) {
-          if (share != 0 && slack < 0.01) continue;
-          const Vec3 beside = middle + share * slack * along;
-          const double up = way_out(solid, pose, beside, -down);
-          const double deep = 0.5 * (up + way_out(solid, pose, beside, down));
-          const Vec3 at = beside + (std::min(deep, kDeepest) - up) * down;
-          for (const double flip : {1.0, -1.0}) grasp(s, at, down, flip * closing, half, share);
-        }
-      }
-    }
+    for (const FingersAround& way : fingers_around(solid, part_->pose, ways_, p_.hand, upright_))
+      grasp(s, way.at, way.down, way.closing, way.half, way.share);
   }
 
   void grasp(int s, const Vec3& at, const Vec3& down, const Vec3& closing, double half,
@@ -192,7 +129,7 @@ class Search {
     const Pose& pose = part_->pose;
     Hold hold;
     hold.solid = s;
-    hold.turned = frame_of(down, closing);
+    hold.turned = tool_frame(down, closing);
     hold.tool = pose.inverse() * Pose{at, hold.turned};
     const bool twists = !p_.joint.slides && lever(at) < kKnob;
     double cost = p_.grasps ? 0 : 1.5;
@@ -258,7 +195,7 @@ class Search {
       hold.contact = contact;
       hold.normal = normal;
       hold.open = 0;
-      hold.turned = frame_of(-Vec3::UnitZ(), closing);
+      hold.turned = tool_frame(-Vec3::UnitZ(), closing);
       hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
       const double cost = (p_.grasps ? 1.5 : 0) + lever_cost(at) + 2 * (1 + out.dot(way));
       add(hold, cost + turn_cost(hold.turned, -Vec3::UnitZ()));
@@ -267,7 +204,7 @@ class Search {
       for (const double leant : kLeant) {
         const Vec3 down = (-leant * flat - Vec3::UnitZ()).normalized();
         const Vec3 across = (closing - closing.dot(down) * down).normalized();
-        hold.turned = frame_of(down, across);
+        hold.turned = tool_frame(down, across);
         hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
         add(hold, cost + kLeantCost + turn_cost(hold.turned, down));
       }

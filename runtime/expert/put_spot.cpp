@@ -34,12 +34,14 @@ constexpr std::size_t kGiven = 8;                       // of those that are rea
 constexpr double kHalfOut = 0.7;  // of half a region: where what comes first leaves room
 constexpr std::array kFiner = {0.008, 0.004, 0.002, 0.001};  // m: steps to more room
 constexpr std::size_t kFined = 6;                            // spots that are moved so
-constexpr double kMostSlope = 0.08;  // m over a region, along its own normal: still on it
-constexpr double kSlopeStep = 0.01;  // m
-constexpr double kInRegion = 0.8;    // of half of it
-constexpr double kSlopeCost = 10;    // of a m farther in
-constexpr double kMark = 0.01;       // m, half of the square that stands for the spot
-constexpr double kProud = 0.03;      // m that what carries may stand out of the region it is on
+constexpr double kMostSlope = 0.08;   // m over a region, along its own normal: still on it
+constexpr double kSlopeStep = 0.01;   // m
+constexpr double kInRegion = 0.8;     // of half of it
+constexpr double kSlopeCost = 10;     // of a m farther in
+constexpr double kMark = 0.01;        // m, half of the square that stands for the spot
+constexpr double kFloorBelow = 0.05;  // m: a region's floor may be as far below it
+constexpr double kLevelAxis = 0.9;    // of an axis: it is level
+constexpr double kProud = 0.03;       // m that what carries may stand out of the region it is on
 
 // A place on a slope.
 struct Slope {
@@ -293,7 +295,7 @@ std::vector<Tight> tightest(const Spots& spots, const std::vector<Wanted>& all,
   const auto room_at = [&](const Wanted& wanted, const Vec2& at, double* height) {
     *height = spots.support(at, wanted.top);
     double room = kNone;
-    if (*height >= wanted.at.z() - 0.05) roomiest(at, *height, &room, nullptr, wanted.top);
+    if (*height >= wanted.at.z() - kFloorBelow) roomiest(at, *height, &room, nullptr, wanted.top);
     return room;
   };
   struct From {
@@ -381,7 +383,7 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
     const Vec2 at = wanted.at.head<2>();
     const double height = spots.support(at, wanted.top);
     // Under the region there may be its floor, or none of it.
-    if (height < wanted.at.z() - 0.05) continue;
+    if (height < wanted.at.z() - kFloorBelow) continue;
     double room = 0, share = 0;
     roomiest(at, height, &room, &share, wanted.top);
     if (room < kTightest) continue;
@@ -417,6 +419,47 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
       out.push_back(spot);
       break;
     }
+  }
+  return out;
+}
+
+double PutPlace::depth_along(const Vec2& way) const {
+  double most = 0;
+  for (const Vec2& p : outline) most = std::max(most, way.dot(at.head<2>() - p));
+  return most;
+}
+
+std::vector<PutPlace> find_put_places(const Scene& scene, const policy::Privileged& view,
+                                      const policy::Skill& skill) {
+  std::vector<PutPlace> out;
+  if (!skill.region) return out;
+  const Spots spots(scene, view, skill, false);
+  const policy::Skill::Box& box = *skill.region;
+  const Pose pose = spots.owner() * box.turned;
+  PutPlace place;
+  std::vector<Vec2> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at = pose.apply({corner & 1 ? box.low.x() : box.high.x(),
+                                corner & 2 ? box.low.y() : box.high.y(),
+                                corner & 4 ? box.low.z() : box.high.z()});
+    corners.push_back(at.head<2>());
+    place.top = std::max(place.top, at.z());
+  }
+  place.outline = convex_outline(std::move(corners));
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec2 way = (pose.rotation * Vec3::Unit(axis)).head<2>();
+    if (way.norm() < kLevelAxis) continue;
+    place.ways.push_back(way.normalized());
+    place.ways.push_back(-way.normalized());
+  }
+  for (const Wanted& wanted : spots.wanted()) {
+    const Vec2 at = wanted.at.head<2>();
+    const double height = spots.support(at, wanted.top);
+    if (height < wanted.at.z() - kFloorBelow) continue;
+    place.at = {at.x(), at.y(), height};
+    place.cost = 4 * wanted.away + 3 * (1 - spots.share_supported(at, height, wanted.top,
+                                                                  Eigen::Matrix2d::Identity()));
+    out.push_back(place);
   }
   return out;
 }

@@ -24,6 +24,21 @@ std::vector<PutSpot> find_put_spots(const Scene& scene, const policy::Privileged
                                     const policy::Skill& skill, const Reach& reach,
                                     bool leaves_room = false);
 
+// A place that is not asked what room there is over it; base frame.
+struct PutPlace {
+  Vec3 at = Vec3::Zero();  // on what the source shall stand
+  double cost = 0;
+  double top = 0;          // m, of the region
+  std::vector<Vec2> ways;  // level, unit: along its sides
+  Outline outline;         // of the region
+  // m of the region that are before it, for what comes along `way`.
+  double depth_along(const Vec2& way) const;
+};
+
+// All of a region's grid that carry what stands there.
+std::vector<PutPlace> find_put_places(const Scene& scene, const policy::Privileged& view,
+                                      const policy::Skill& skill);
+
 // In the base frame, now.
 Vec3 spot_now(const PutSpot& spot, const policy::Privileged& view);
 

@@ -42,6 +42,8 @@ constexpr Asked kAsked[] = {
      "two things, the second onto a part of the table"},
     {"libero_10", "kitchen_scene3_turn_on_the_stove_and_put_the_moka_pot_on_it",
      "a knob, then a pot"},
+    {"libero_10", "kitchen_scene6_put_the_yellow_and_white_mug_in_the_microwave_and_close_it",
+     "under a roof: by its handle, from the side, then a door that pushes it in"},
 };
 
 }  // namespace
