@@ -21,13 +21,14 @@ constexpr double kPutRoom = 0.0025;        // m between the hand and what it doe
 constexpr double kSourceRoom = 0.002;      // m between the source and all but what it stands on
 constexpr double kPutLooks = 0.005;        // m: a board that is as thin is seen
 constexpr double kPutRoomyEnough = 0.012;  // m; more earns nothing
-constexpr double kPutBefore = 0.09;        // m from the hold, where the hand comes from
+constexpr double kPutBefore = 0.07;        // m from the hold, where the hand comes from
 constexpr double kPutLift = 0.004;         // m that it is carried above what it is put on
 constexpr double kPutRise = 0.05;          // m straight up from where it lay, where that is free
 constexpr double kMouth = 0.03;    // m between the source and the place's side before it goes in
 constexpr double kLevelWay = 0.4;  // of the way down: less level is no way in from the side
 constexpr std::array kOut = {0.06, 0.10, 0.14};  // m along the surface, from under something
 constexpr int kOutWays = 8;
+constexpr double kFromUnder = 0.25;  // m straight up that are free where it is out from under it
 constexpr std::size_t kPutMostHolds = 60, kMostWays = 4;
 constexpr int kPutTurns = 8;  // of the source, where it comes from above
 constexpr double kWidthCost = 10,
@@ -108,7 +109,7 @@ class PutSearch {
                                      0.5 * (p_.scene->source.bottom + p_.scene->source.top));
       const double lever = (off - off.dot(way.closing) * way.closing).norm();
       held.cost = 0.7 * tilt + 0.1 * turn + kWidthCost * way.half + kLeverCost * lever +
-                  0.1 * std::abs(way.share) + 40 * (kPutRoomyEnough - room) +
+                  0.1 * std::abs(way.share) + 80 * (kPutRoomyEnough - room) +
                   kPutStretchCost * std::max(0.0, way.at.head<2>().norm() - kPutNearBase);
       out.push_back(held);
       return;
@@ -203,10 +204,9 @@ class PutSearch {
     };
     Pose up = held.tool;
     up.position.z() += kPutRise;
-    if (is_free(held.tool, up)) {
-      out.push_back({up});
-      return out;
-    }
+    if (is_free(held.tool, up)) out.push_back({up});
+    if (!is_covered(*p_.scene)) return out;
+    const std::size_t straight = out.size();
     Pose off = held.tool;
     off.position.z() += kPutLift;
     for (const double far : kOut) {
@@ -214,10 +214,11 @@ class PutSearch {
         const SinCos t = portable_sincos(2 * std::numbers::pi * i / kOutWays);
         Pose aside = off;
         aside.position += far * Vec3(t.cos, t.sin, 0);
-        up.position = aside.position + Vec3(0, 0, kPutRise);
-        if (is_free(off, aside) && is_free(aside, up)) out.push_back({aside, up});
+        Pose high = aside;
+        high.position.z() += kFromUnder;
+        if (is_free(off, aside) && is_free(aside, high)) out.push_back({aside});
       }
-      if (!out.empty()) break;
+      if (out.size() > straight) break;
     }
     return out;
   }
@@ -278,5 +279,12 @@ class PutSearch {
 }  // namespace
 
 std::optional<PutPlan> plan_put(const PutProblem& problem) { return PutSearch(problem).run(); }
+
+bool is_covered(const Scene& scene) {
+  return std::ranges::any_of(scene.fixtures, [&](const Footprint& part) {
+    return part.bottom > scene.source.top - kPutRoom &&
+           separation(part.whole, scene.source.whole) < 0;
+  });
+}
 
 }  // namespace probe::expert

@@ -35,4 +35,7 @@ struct PutProblem {
 
 std::optional<PutPlan> plan_put(const PutProblem& problem);
 
+// Whether something hangs over the source, so that it is not lifted straight up.
+bool is_covered(const Scene& scene);
+
 }  // namespace probe::expert

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kUnderMostTries = 3;
 constexpr double kHoldNear = 0.004, kPutNear = 0.008, kHomeNear = 0.03;  // m
+constexpr double kBeforeHold = 0.010, kBeforePut = 0.015;                // m
 constexpr double kSlipped = 0.025;   // m that the source may move in the hand
 constexpr double kOffPlace = 0.05;   // m, of what was put
 constexpr double kTouches = 0.0025;  // m over what it is put on
@@ -19,7 +20,7 @@ constexpr double kDown = 0.006;      // m a decision, until it stands
 
 constexpr Pace kUnderFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kUnderNearPace{.shift = 0.035, .turn = 0.20};
-constexpr Pace kUnderHeldPace{.shift = 0.045, .turn = 0.25, .gain = 0.020};
+constexpr Pace kUnderHeldPace{.shift = 0.060, .turn = 0.30, .gain = 0.025};
 
 bool all_of_them_touch(const Scene& s) {
   return !s.fingers_on_source.empty() &&
@@ -41,7 +42,7 @@ bool PutUnder::plan(const Scene& scene, const policy::Privileged& view, const Re
   plan_ = plan_put({&scene, &view, &reach, skill_.object, places, failed_});
   if (!plan_) return false;
   enter(Phase::kGo);
-  way_.begin(plan_->to_hold, kHoldNear);
+  way_.begin(plan_->to_hold, kHoldNear, kBeforeHold);
   return true;
 }
 
@@ -68,7 +69,7 @@ void PutUnder::begin_leave(const Scene& scene, const policy::Privileged& view, c
   const std::vector<Ball> balls = hand_balls(hand, scene.openness * hand.opening_half).all();
   if (const auto home = free_way(surroundings_of(view), way.back(), ready_, balls))
     way.insert(way.end(), home->begin(), home->end());
-  way_.begin(std::move(way), kHomeNear);
+  way_.begin(std::move(way), kHomeNear, kHomeNear);
   enter(Phase::kLeave);
 }
 
@@ -85,13 +86,13 @@ void PutUnder::advance(const Scene& s, const policy::Privileged& view, const Rea
       }
       return;
     case Phase::kGrip:
-      if (steps_ < 3) return;
+      if (steps_ < 2) return;
       if (all_of_them_touch(s)) {
         taken_ = s.tcp.inverse() * s.source_pose;
-        way_.begin(plan_->carry, kPutNear);
+        way_.begin(plan_->carry, kPutNear, kBeforePut);
         return enter(Phase::kCarry);
       }
-      if (steps_ >= 5) start_over(s, view, reach, "not all fingers touch it when they close");
+      if (steps_ >= 4) start_over(s, view, reach, "not all fingers touch it when they close");
       return;
     case Phase::kCarry:
       if (!holds(s)) return start_over(s, view, reach, "it slipped in the hand");

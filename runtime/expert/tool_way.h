@@ -11,8 +11,8 @@ namespace probe::expert {
 class ToolWay {
  public:
   enum class State { kGoing, kThere, kStuck };
-  // `near`: m, how near the last one is met.
-  void begin(std::vector<Pose> way, double near);
+  // m: how near the last one is met, and the one before it, which leads into it.
+  void begin(std::vector<Pose> way, double near, double before_last);
   // Call once a decision.
   State advance(const Pose& tool);
   const Pose& goal() const { return way_[next_]; }
@@ -22,7 +22,7 @@ class ToolWay {
  private:
   std::vector<Pose> way_;
   std::size_t next_ = 0;
-  double near_ = 0.004;
+  double near_ = 0.004, before_last_ = 0.010;
   int still_ = 0, steps_ = 0;
   Pose before_;
 };

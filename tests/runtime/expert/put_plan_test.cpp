@@ -134,7 +134,7 @@ TEST_CASE("holds that were tried are taken last") {
 TEST_CASE("a tool's way is gone pose by pose, and says where the tool comes no nearer") {
   const auto at = [](double x) { return Pose{{x, 0, 0}, Quat::Identity()}; };
   ToolWay way;
-  way.begin({at(0.1), at(0.2), at(0.3)}, 0.004);
+  way.begin({at(0.1), at(0.2), at(0.3)}, 0.004, 0.010);
   CHECK(way.advance(at(0)) == ToolWay::State::kGoing);
   CHECK(way.goal().position.x() == doctest::Approx(0.1));
   CHECK(way.advance(at(0.08)) == ToolWay::State::kGoing);  // 3 cm are near enough to pass
@@ -143,7 +143,7 @@ TEST_CASE("a tool's way is gone pose by pose, and says where the tool comes no n
   CHECK(way.is_last());
   CHECK(way.advance(at(0.299)) == ToolWay::State::kThere);
 
-  way.begin({at(0.3)}, 0.004);
+  way.begin({at(0.3)}, 0.004, 0.010);
   CHECK(way.advance(at(0.1)) == ToolWay::State::kGoing);
   for (int i = 0; i < 2; ++i) CHECK(way.advance(at(0.1)) == ToolWay::State::kGoing);
   CHECK(way.advance(at(0.1)) == ToolWay::State::kStuck);
