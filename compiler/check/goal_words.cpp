@@ -34,9 +34,9 @@ void collect_relations(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
 }
 
 // What an instruction says beside its slots, which say themselves how many they mean.
-std::string literal_text(const Model& model, const Task& task) {
+std::string literal_text(const Template& say) {
   std::string text;
-  for (const Template::Part& part : model.templates[task.say].parts) {
+  for (const Template::Part& part : say.parts) {
     text += part.literal + " ";
     if (!part.slot || part.slot->avoid) continue;
     if (part.slot->count == syntax::SlotCount::kBoth) text += "both ";
@@ -61,15 +61,111 @@ std::string other_relation(const Model& model, const std::set<PredicateId>& judg
   return {};
 }
 
-// An instruction that says the opposite of what success is, or another relation alone.
-bool says_other_relation(const Model& model, const Task& task, Reporter& reporter) {
-  std::set<PredicateId> judged;
-  std::set<ExprRef> seen;
-  for (const Metric& metric : task.judged) {
-    if (metric.name == "success") collect_relations(model, metric.expr, seen, judged);
+// What each of the table's words asks of a goal; empty where that is there.
+enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach, kSpares };
+struct GoalWords {
+  std::string_view words;
+  Asks asks;
+};
+constexpr auto kGoalWords = std::to_array<GoalWords>({
+#define PROBE_GOAL_WORDS(words, asks) {words, Asks::asks},
+#include "compiler/check/goal_words.def"
+});
+
+using PartOf = std::pair<FixtureId, std::uint32_t>;
+
+// The parts that success measures: by themselves, by their joint or by a region of theirs.
+void collect_parts(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
+                   std::set<PartOf>& out) {
+  if (ref == kNoExpr || !seen.insert(ref).second) return;
+  const ExprNode& node = model.exprs.nodes[ref];
+  const auto fixture = static_cast<FixtureId>(node.a);
+  if (node.op == ExprOp::kPart) out.insert({fixture, node.b});
+  if (node.op == ExprOp::kRegion)
+    out.insert({fixture, model.fixtures[fixture].regions[node.b].part});
+  if (node.op == ExprOp::kJoint) {
+    const auto& parts = model.fixtures[fixture].parts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].joint == node.b) out.insert({fixture, i});
+    }
   }
-  if (judged.empty()) return false;
-  const std::string text = fold_case(literal_text(model, task));
+  if (node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo) {
+    for (const ExprRef body : model.exprs.sets[node.set].bodies)
+      collect_parts(model, body, seen, out);
+  }
+  for (const ExprRef arg : node.args) collect_parts(model, arg, seen, out);
+  if (node.op == ExprOp::kCall)
+    collect_parts(model, model.predicates[node.predicate].body, seen, out);
+}
+
+// What tasks that say or are judged by the same have in common, read once.
+class Shared {
+ public:
+  explicit Shared(const Model& model) : model_(model) {}
+
+  struct Text {
+    std::string folded;
+    std::vector<GoalWords> words;  // those of the table that are said
+  };
+  const Text& text(TemplateId say) {
+    const auto [at, is_new] = texts_.try_emplace(say);
+    if (!is_new) return at->second;
+    at->second.folded = fold_case(literal_text(model_.templates[say]));
+    for (const GoalWords& one : kGoalWords) {
+      if (has_words(at->second.folded, one.words)) at->second.words.push_back(one);
+    }
+    return at->second;
+  }
+
+  // What success is, as expressions.
+  static std::vector<ExprRef> success_of(const Task& task) {
+    std::vector<ExprRef> found;
+    for (const Metric& metric : task.judged) {
+      if (metric.name == "success") found.push_back(metric.expr);
+    }
+    return found;
+  }
+
+  const std::set<PredicateId>& relations(const std::vector<ExprRef>& success) {
+    const auto [at, is_new] = relations_.try_emplace(success);
+    std::set<ExprRef> seen;
+    if (is_new) {
+      for (const ExprRef expr : success) collect_relations(model_, expr, seen, at->second);
+    }
+    return at->second;
+  }
+  const std::set<PartOf>& parts(const std::vector<ExprRef>& success) {
+    const auto [at, is_new] = parts_.try_emplace(success);
+    std::set<ExprRef> seen;
+    if (is_new) {
+      for (const ExprRef expr : success) collect_parts(model_, expr, seen, at->second);
+    }
+    return at->second;
+  }
+
+  // Words and success of which nothing was to be said but for what the task itself is.
+  bool is_known_right(TemplateId say, const std::vector<ExprRef>& success) const {
+    return right_.contains({say, success});
+  }
+  void keep_right(TemplateId say, const std::vector<ExprRef>& success) {
+    right_.insert({say, success});
+  }
+
+ private:
+  const Model& model_;
+  std::map<TemplateId, Text> texts_;
+  std::map<std::vector<ExprRef>, std::set<PredicateId>> relations_;
+  std::map<std::vector<ExprRef>, std::set<PartOf>> parts_;
+  std::set<std::pair<TemplateId, std::vector<ExprRef>>> right_;
+};
+
+// An instruction that says the opposite of what success is, or another relation alone.
+bool says_other_relation(const Model& model, const Task& task, Shared& shared,
+                         Reporter& reporter) {
+  const std::vector<ExprRef> success = Shared::success_of(task);
+  const std::set<PredicateId>& judged = shared.relations(success);
+  if (judged.empty() || shared.is_known_right(task.say, success)) return false;
+  const std::string& text = shared.text(task.say).folded;
   const std::string elsewhere = other_relation(model, judged, text);
   bool is_said = false;
   for (const PredicateId id : judged) {
@@ -84,6 +180,7 @@ bool says_other_relation(const Model& model, const Task& task, Reporter& reporte
         .point("that is said by " + listed(relation.words))
         .label(relation.span, "declared here");
   }
+  if (!is_said) shared.keep_right(task.say, success);
   return is_said;
 }
 
@@ -118,22 +215,11 @@ struct JointGoal {
   }
 };
 
-// What each of the table's words asks of a goal; empty where that is there.
-enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach, kSpares };
-struct GoalWords {
-  std::string_view words;
-  Asks asks;
-};
-constexpr auto kGoalWords = std::to_array<GoalWords>({
-#define PROBE_GOAL_WORDS(words, asks) {words, Asks::asks},
-#include "compiler/check/goal_words.def"
-});
-
 // What a task says and what it is judged by, read when some word asks for it.
 class Told {
  public:
-  Told(const Model& model, const Task& task)
-      : model_(model), task_(task), text_(fold_case(literal_text(model, task))) {}
+  Told(const Model& model, const Task& task, Shared& shared)
+      : model_(model), task_(task), text_(shared.text(task.say)) {}
 
   const Said& said() {
     if (!said_) said_ = said_by(model_, task_);
@@ -145,13 +231,7 @@ class Told {
   }
 
   // Those of the table that are said.
-  std::vector<GoalWords> words() const {
-    std::vector<GoalWords> found;
-    for (const GoalWords& one : kGoalWords) {
-      if (has_words(text_, one.words)) found.push_back(one);
-    }
-    return found;
-  }
+  const std::vector<GoalWords>& words() const { return text_.words; }
 
   // Why success is not what the words ask for; none where it is, or nothing is certain.
   std::optional<std::string> lack_of(const GoalWords& one) {
@@ -176,8 +256,8 @@ class Told {
 
  private:
   bool says(Asks asks) {
-    return std::any_of(kGoalWords.begin(), kGoalWords.end(), [&](const GoalWords& one) {
-      return one.asks == asks && has_words(text_, one.words) && tells_to(one);
+    return std::any_of(text_.words.begin(), text_.words.end(), [&](const GoalWords& one) {
+      return one.asks == asks && tells_to(one);
     });
   }
 
@@ -444,7 +524,7 @@ class Told {
 
   const Model& model_;
   const Task& task_;
-  std::string text_;
+  const Shared::Text& text_;
   std::optional<Said> said_;
   std::optional<Goal> goal_;
 };
@@ -555,42 +635,14 @@ bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& 
   return false;
 }
 
-using PartOf = std::pair<FixtureId, std::uint32_t>;
-
-// The parts that success measures: by themselves, by their joint or by a region of theirs.
-void collect_parts(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
-                   std::set<PartOf>& out) {
-  if (ref == kNoExpr || !seen.insert(ref).second) return;
-  const ExprNode& node = model.exprs.nodes[ref];
-  const auto fixture = static_cast<FixtureId>(node.a);
-  if (node.op == ExprOp::kPart) out.insert({fixture, node.b});
-  if (node.op == ExprOp::kRegion)
-    out.insert({fixture, model.fixtures[fixture].regions[node.b].part});
-  if (node.op == ExprOp::kJoint) {
-    const auto& parts = model.fixtures[fixture].parts;
-    for (std::uint32_t i = 0; i < parts.size(); ++i) {
-      if (parts[i].joint == node.b) out.insert({fixture, i});
-    }
-  }
-  if (node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo) {
-    for (const ExprRef body : model.exprs.sets[node.set].bodies)
-      collect_parts(model, body, seen, out);
-  }
-  for (const ExprRef arg : node.args) collect_parts(model, arg, seen, out);
-  if (node.op == ExprOp::kCall)
-    collect_parts(model, model.predicates[node.predicate].body, seen, out);
-}
-
 // What the task does with parts: what fills its roles, what success measures, what its solution
 // handles on the way.
-std::set<PartOf> parts_meant(const Model& model, const Task& task) {
+std::set<PartOf> parts_meant(const Model& model, const Task& task, Shared& shared) {
   std::set<PartOf> meant;
   for (const auto& [role, id] : task.things())
     meant.insert({model.objects[id].of->fixture, model.objects[id].of->part});
-  std::set<ExprRef> seen;
-  for (const Metric& metric : task.judged) {
-    if (metric.name == "success") collect_parts(model, metric.expr, seen, meant);
-  }
+  const std::set<PartOf>& measured = shared.parts(Shared::success_of(task));
+  meant.insert(measured.begin(), measured.end());
   if (meant.empty()) return meant;
   for (const SkillUse& skill : task.solution) {
     for (const SkillOperand& operand : {skill.what, skill.to}) {
@@ -604,14 +656,14 @@ std::set<PartOf> parts_meant(const Model& model, const Task& task) {
 }
 
 // "open the middle drawer" of which success is that the top drawer is open.
-bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
+bool says_other_part(const Model& model, const Task& task, Shared& shared, Reporter& reporter) {
   if (has_negation(model.templates[task.say])) return false;
-  const std::set<PartOf> meant = parts_meant(model, task);
+  const std::set<PartOf> meant = parts_meant(model, task, shared);
   if (meant.empty()) return false;
   const auto is_meant = [&](const Object& thing) {
     return meant.contains({thing.of->fixture, thing.of->part});
   };
-  const std::string text = fold_case(literal_text(model, task));
+  const std::string& text = shared.text(task.say).folded;
   const auto& parts = model.templates[task.say].parts;
   const auto is_said = [&](const Object& thing) {
     // A region without a name of its own is called like what it is of.
@@ -650,14 +702,15 @@ bool says_other_part(const Model& model, const Task& task, Reporter& reporter) {
 
 void check_goal_words(const Model& model, Reporter& reporter) {
   AskedTwice asks_twice(model);
+  Shared shared(model);
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete || is_control(model.templates[task.say])) continue;
     const About about(reporter, task.decl_span);
-    Told told(model, task);
+    Told told(model, task, shared);
     // One thing is said of a task: the others may follow from it.
-    if (says_other_relation(model, task, reporter)) continue;
+    if (says_other_relation(model, task, shared, reporter)) continue;
     if (says_other_goal(model, task, told, reporter)) continue;
-    if (says_other_part(model, task, reporter)) continue;
+    if (says_other_part(model, task, shared, reporter)) continue;
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
       continue;
     if (asks_twice(task)) leaves_one_out(model, task, told, reporter);

@@ -88,11 +88,15 @@ struct LayoutReader {
         continue;
       }
       std::vector<Cell> grid;
-      for (std::uint64_t i = 0; i < stmt.nx.value; ++i) {
-        for (std::uint64_t j = 0; j < stmt.ny.value; ++j) {
-          grid.push_back({grid_coordinate((*at)[0].exact, (*spread)[0].exact, i, stmt.nx.value),
-                          grid_coordinate((*at)[1].exact, (*spread)[1].exact, j, stmt.ny.value)});
-        }
+      const auto coordinates = [&](std::size_t axis, std::uint64_t side) {
+        std::vector<double> all;
+        for (std::uint64_t i = 0; i < side; ++i)
+          all.push_back(grid_coordinate((*at)[axis].exact, (*spread)[axis].exact, i, side));
+        return all;
+      };
+      const std::vector<double> ys = coordinates(1, stmt.ny.value);
+      for (const double x : coordinates(0, stmt.nx.value)) {
+        for (const double y : ys) grid.push_back({x, y});
       }
       cells.grids.push_back(std::move(grid));
       cells.spreads.push_back({(*spread)[0].si(), (*spread)[1].si(), point.span});

@@ -21,7 +21,7 @@ TemplateId add_template(Context& context, const syntax::TemplateText& text, std:
   record.span = span;
   for (const syntax::TemplatePart& part : text.parts) {
     if (const auto* literal = std::get_if<std::string>(&part)) {
-      record.parts.push_back({*literal, std::nullopt});
+      record.parts.push_back({*literal, std::nullopt, words_of(*literal)});
       continue;
     }
     const auto& slot = std::get<syntax::Slot>(part);

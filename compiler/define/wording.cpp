@@ -13,8 +13,9 @@ namespace {
 
 // A word of an instruction, or the object that a slot stands for.
 struct Word {
-  std::string text;
+  std::string_view text;
   bool is_object = false;
+  bool is_other = false;  // those of a set that were not said before
   bool operator==(const Word&) const = default;
 };
 
@@ -59,15 +60,6 @@ bool has(const std::vector<Word>& words, std::string_view text) {
                      [&](const Word& word) { return !word.is_object && word.text == text; });
 }
 
-// The name of the object of a slot; one that fills a role is that role, however the text names it.
-std::string object_of(const Model& model, const Task& task, const SlotRef& slot) {
-  if (slot.role != RoleId::kNone) {
-    // Of a set `{both goods}` and `{the goods}` are other words for the same.
-    return slot.count == syntax::SlotCount::kOther ? "other " + slot.name.text : slot.name.text;
-  }
-  return role_word(model, task, slot.name.text);
-}
-
 // As they are written, but for articles.
 std::vector<std::string> literal_words(const std::string& text) {
   std::vector<std::string> words;
@@ -80,20 +72,31 @@ std::vector<std::string> literal_words(const std::string& text) {
   return words;
 }
 
-// The words with their signs and in their case, but for articles; `{the source}` is one of them,
-// whatever words are chosen for it.
-std::vector<Word> words_of(const Model& model, const Task& task) {
+enum class Form { kWritten, kPlain };
+
+// The words with their signs and in their case, or without, but for articles; `{the source}` is one
+// of them, whatever words are chosen for it. Views into the model.
+std::vector<Word> words_of(const Model& model, const Task& task, Form form) {
   std::vector<Word> words;
   for (const Template::Part& part : model.templates[task.say].parts) {
     if (part.slot) {
-      words.push_back({object_of(model, task, *part.slot), true});
-      // Words that count are words of their own.
-      const auto count = part.slot->count;
-      if (count == syntax::SlotCount::kBoth) words.push_back({"both"});
-      if (count == syntax::SlotCount::kAll) words.push_back({"all"});
+      // One that fills a role is that role, however the text names it.
+      const SlotRef& slot = *part.slot;
+      const bool has_role = slot.role != RoleId::kNone;
+      const std::string& name =
+          has_role ? slot.name.text : role_word(model, task, slot.name.text);
+      const bool is_other = has_role && slot.count == syntax::SlotCount::kOther;
+      words.push_back({name, true, is_other});
+      // Words that count are words of their own. Of a set `{both goods}` and `{the goods}` are
+      // other words for the same.
+      if (slot.count == syntax::SlotCount::kBoth) words.push_back({"both"});
+      if (slot.count == syntax::SlotCount::kAll) words.push_back({"all"});
       continue;
     }
-    for (std::string& word : literal_words(part.literal)) words.push_back({std::move(word)});
+    for (const Template::Word& word : part.words) {
+      const std::string& text = form == Form::kPlain ? word.plain : word.text;
+      if (!text.empty()) words.push_back({text});
+    }
   }
   return words;
 }
@@ -104,14 +107,6 @@ std::string plain(std::string_view word) {
   const std::size_t begin = word.find_first_not_of(kSigns);
   if (begin == word.npos) return {};
   return fold_case(word.substr(begin, word.find_last_not_of(kSigns) + 1 - begin));
-}
-
-std::vector<Word> plain(std::vector<Word> words) {
-  for (Word& word : words) {
-    if (!word.is_object) word.text = plain(word.text);
-  }
-  std::erase_if(words, [](const Word& word) { return word.text.empty(); });
-  return words;
 }
 
 bool says_the_opposite(const std::vector<Word>& a, const std::vector<Word>& b) {
@@ -137,13 +132,13 @@ bool differs_in_place(const std::vector<Word>& a, const std::vector<Word>& b) {
   return true;
 }
 
-std::vector<std::string> objects_in_order(const std::vector<Word>& words,
-                                          const std::vector<Word>& also_in) {
-  std::vector<std::string> objects;
+std::vector<Word> objects_in_order(const std::vector<Word>& words,
+                                   const std::vector<Word>& also_in) {
+  std::vector<Word> objects;
   for (const Word& word : words) {
     const bool is_shared = std::find(also_in.begin(), also_in.end(), word) != also_in.end();
-    const bool is_new = std::find(objects.begin(), objects.end(), word.text) == objects.end();
-    if (word.is_object && is_shared && is_new) objects.push_back(word.text);
+    const bool is_new = std::find(objects.begin(), objects.end(), word) == objects.end();
+    if (word.is_object && is_shared && is_new) objects.push_back(word);
   }
   return objects;
 }
@@ -158,7 +153,16 @@ bool goes_the_other_way(const std::vector<Word>& a, const std::vector<Word>& b) 
 
 }  // namespace
 
-std::string role_word(const Model& model, const Task& task, const std::string& object) {
+std::vector<Template::Word> words_of(const std::string& literal) {
+  std::vector<Template::Word> words;
+  for (std::string& word : literal_words(literal)) {
+    std::string folded = plain(word);
+    words.push_back({std::move(word), std::move(folded)});
+  }
+  return words;
+}
+
+const std::string& role_word(const Model& model, const Task& task, const std::string& object) {
   for (std::size_t i = 0; i < model.roles.size(); ++i) {
     const std::vector<ObjectId> objects = task.objects_in(model.roles.id(i));
     if (objects.size() == 1 && model.objects[objects.front()].name == object)
@@ -214,14 +218,16 @@ bool asks_otherwise(const Model& model, const Task& a, const Task& b) {
 
 bool contradicts(const Model& model, const Task& a, const Task& b) {
   if (a.say == b.say) return false;
-  const std::vector<Word> here = plain(words_of(model, a)), there = plain(words_of(model, b));
+  const std::vector<Word> here = words_of(model, a, Form::kPlain),
+                          there = words_of(model, b, Form::kPlain);
   return says_the_opposite(here, there) || differs_in_place(here, there) ||
          goes_the_other_way(here, there);
 }
 
 bool is_reworded(const Model& model, const Task& a, const Task& b) {
   return has_negation(model.templates[a.say]) == has_negation(model.templates[b.say]) &&
-         !asks_otherwise(model, a, b) && words_of(model, a) != words_of(model, b);
+         !asks_otherwise(model, a, b) &&
+         words_of(model, a, Form::kWritten) != words_of(model, b, Form::kWritten);
 }
 
 }  // namespace probe::sema

@@ -9,8 +9,12 @@
 
 namespace probe::sema {
 
-// The role that an object of this name fills alone in the task, else the name.
-std::string role_word(const Model& model, const Task& task, const std::string& object);
+// What Template::Part::words are of a literal.
+std::vector<Template::Word> words_of(const std::string& literal);
+
+// The role that an object of this name fills alone in the task, else the name: of the model, or
+// `object` itself.
+const std::string& role_word(const Model& model, const Task& task, const std::string& object);
 
 // The verb of words on the spot: the first one, whatever its case and the signs around it. Empty
 // when a slot stands first.

@@ -451,9 +451,14 @@ struct Template {
   bool broken = false;  // as of an object
   Span span;
   std::string frame;  // the verb frame
+  // A word as it is written, and in one case without the signs around it.
+  struct Word {
+    std::string text, plain;
+  };
   struct Part {
     std::string literal;
     std::optional<SlotRef> slot;
+    std::vector<Word> words = {};  // of the literal, but for articles
   };
   std::vector<Part> parts;
 };

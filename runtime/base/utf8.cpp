@@ -51,6 +51,15 @@ std::string mapped(std::string_view text, int options) {
 }  // namespace
 
 std::string fold_case(std::string_view text) {
+  // Of ASCII the fold is small letters, and nothing composes.
+  const auto is_ascii = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  if (std::ranges::all_of(text, is_ascii)) {
+    std::string out(text);
+    for (char& c : out) {
+      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return out;
+  }
   return mapped(text, UTF8PROC_CASEFOLD | UTF8PROC_COMPOSE | UTF8PROC_STABLE);
 }
 

@@ -5,6 +5,7 @@
 #include "compiler/language/fixes.h"
 #include "compiler/language/rename.h"
 #include "runtime/lsp/answers_impl.h"
+#include "runtime/lsp/common_ends.h"
 #include "runtime/lsp/uri.h"
 #include "runtime/lsp/values.h"
 
@@ -15,13 +16,8 @@ namespace {
 Json difference(const language::Lines& lines, std::string_view before, std::string_view after) {
   Json out = Json::array();
   if (before == after) return out;
-  std::size_t front = 0, back = 0;
-  const std::size_t most = std::min(before.size(), after.size());
-  while (front < most && before[front] == after[front]) ++front;
+  auto [front, back] = common_ends(before, after);
   while (front > 0 && before[front - 1] != '\n') --front;
-  while (back < most - front &&
-         before[before.size() - 1 - back] == after[after.size() - 1 - back])
-    ++back;
   while (back > 0 && before[before.size() - back - 1] != '\n') --back;
   const auto begin = static_cast<std::uint32_t>(front);
   const auto end = static_cast<std::uint32_t>(before.size() - back);

@@ -231,6 +231,7 @@ class TextServer final : public Server {
   void publish() {
     if (client_.pulls) return;
     std::map<std::string, Json> by_uri;
+    std::map<std::string, std::set<std::string>> known;
     const auto uri_for = [&](const std::string& path) {
       const Document* document = workspace_.documents.find(path);
       return document != nullptr ? document->uri : uri_of(path);
@@ -245,9 +246,7 @@ class TextServer final : public Server {
           Json& items = by_uri[uri_for(path)];
           if (items.is_null()) items = Json::array();
           Json item = to_json(*program->now, *said, client_.has_related);
-          const bool is_known =
-              std::any_of(items.begin(), items.end(), [&](const Json& one) { return one == item; });
-          if (!is_known) items.push_back(std::move(item));
+          if (known[path].insert(item.dump()).second) items.push_back(std::move(item));
         }
       }
     }

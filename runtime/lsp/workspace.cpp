@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
+#include <tuple>
 
 #include "runtime/compile/files.h"
+#include "runtime/lsp/common_ends.h"
 
 namespace probe::lsp {
 namespace {
@@ -11,8 +14,10 @@ namespace {
 namespace fs = std::filesystem;
 using language::Snapshot;
 
-bool is_same(const Diagnostic& a, const Diagnostic& b) {
-  return a.code == b.code && a.primary == b.primary && a.message == b.message;
+// What makes two of them the same.
+auto key_of(const Diagnostic& item) {
+  const Span& at = item.primary;
+  return std::tuple(item.code, at.file.value, at.begin, at.end, std::string_view(item.message));
 }
 
 bool is_in(const Snapshot& snapshot, const std::string& path) {
@@ -59,17 +64,16 @@ std::vector<std::string> paths_of(const SourceSet& sources) {
   return paths;
 }
 
-// What stands before and behind all that differs between two texts, in bytes.
-struct Kept {
-  std::size_t front = 0, back = 0, before = 0, after = 0;
-  Kept(std::string_view a, std::string_view b) : before(a.size()), after(b.size()) {
-    const std::size_t most = std::min(a.size(), b.size());
-    while (front < most && a[front] == b[front]) ++front;
-    while (back < most - front && a[a.size() - 1 - back] == b[b.size() - 1 - back]) ++back;
-  }
+// Spans of a text in what it has become.
+struct Moved {
+  std::size_t before = 0, after = 0;  // bytes
+  CommonEnds kept;
+  Moved(std::string_view a, std::string_view b)
+      : before(a.size()), after(b.size()), kept(common_ends(a, b)) {}
+  // False where it differs.
   bool move(Span& span) const {
-    if (span.end <= front) return true;
-    if (span.begin < before - back) return false;
+    if (span.end <= kept.front) return true;
+    if (span.begin < before - kept.back) return false;
     span.begin = static_cast<std::uint32_t>(span.begin + after - before);
     span.end = static_cast<std::uint32_t>(span.end + after - before);
     return true;
@@ -106,10 +110,10 @@ void Workspace::take(Program& program, const WholeCheck& checked) {
   program.slow.clear();
   program.is_checked = true;
   const Files files(checked.paths, *program.now);
+  std::set<decltype(key_of(Diagnostic()))> known;
+  for (const Diagnostic& item : program.now->diagnostics().items()) known.insert(key_of(item));
   for (Diagnostic item : checked.items) {
-    if (!files.move(item)) continue;
-    const auto& known = program.now->diagnostics().items();
-    if (std::ranges::none_of(known, [&](const Diagnostic& one) { return is_same(one, item); }))
+    if (files.move(item) && !known.contains(key_of(item)))
       program.slow.push_back(std::move(item));
   }
 }
@@ -120,7 +124,7 @@ void Workspace::carry_over(const Program& before, Program& after) const {
   const Snapshot& old = *before.now;
   const Snapshot& now = *after.now;
   const Files files(paths_of(old.sources()), now);
-  std::map<FileId, Kept> kept;
+  std::map<FileId, Moved> moved;
   for (Diagnostic item : before.slow) {
     // Of files that lack nothing older than now is believed.
     if (item.primary.is_none() || is_of_files(item)) continue;
@@ -129,7 +133,7 @@ void Workspace::carry_over(const Program& before, Program& after) const {
     item.fix.reset();
     if (!files.move(item)) continue;
     const auto [at, is_new] =
-        kept.try_emplace(was, old.text(was), now.text(item.primary.file));
+        moved.try_emplace(was, old.text(was), now.text(item.primary.file));
     if (at->second.move(item.primary)) after.slow.push_back(std::move(item));
   }
 }

@@ -123,6 +123,23 @@ class Editor {
     }
     return codes;
   }
+  // The version of which diagnostics were published last; -1 of none.
+  std::int64_t published(const std::string& path) const {
+    const std::lock_guard lock(mutex_);
+    std::int64_t version = -1;
+    for (const Json& message : messages_) {
+      if (message.value("method", "") != "textDocument/publishDiagnostics") continue;
+      const Json& params = message["params"];
+      if (params.value("uri", "") == lsp::uri_of(path) && params.contains("version"))
+        version = params["version"].get<std::int64_t>();
+    }
+    return version;
+  }
+  // Of what was said until now nothing is looked at again.
+  void forget() {
+    const std::lock_guard lock(mutex_);
+    messages_.clear();
+  }
   std::vector<Json> messages() const {
     const std::lock_guard lock(mutex_);
     return messages_;
