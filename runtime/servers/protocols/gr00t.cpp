@@ -16,9 +16,13 @@ namespace {
 constexpr std::string_view kNested = "n1.6_nested", kN15 = "n1.5";
 constexpr std::array<std::string_view, 7> kActionNames = {"x",     "y",   "z",      "roll",
                                                           "pitch", "yaw", "gripper"};
-constexpr std::array<std::string_view, 7> kStateNames = kActionNames;
-constexpr std::array<std::string_view, 8> kPaddedStateNames = {"x",     "y",   "z",   "roll",
-                                                               "pitch", "yaw", "pad", "gripper"};
+constexpr std::array<Gr00tState, 8> kPaddedStates = {
+    {{"x"}, {"y"}, {"z"}, {"roll"}, {"pitch"}, {"yaw"}, {"pad"}, {"gripper"}}};
+constexpr std::array<Gr00tState, 7> kStates = {
+    {{"x"}, {"y"}, {"z"}, {"roll"}, {"pitch"}, {"yaw"}, {"gripper"}}};
+// Of LIBERO the turn is an axis times an angle, under these names, and both fingers are one entry.
+constexpr std::array<Gr00tState, 7> kLiberoStates = {
+    {{"x"}, {"y"}, {"z"}, {"roll"}, {"pitch"}, {"yaw"}, {"gripper", 2}}};
 
 // The array with leading dimensions of 1: batch and, from n1.6 on, time.
 wire::Array led(wire::Array array, Gr00tForm form) {
@@ -109,9 +113,10 @@ class Gr00t : public Transport {
 
 }  // namespace
 
-std::span<const std::string_view> gr00t_state_names(StateLayout layout) {
-  if (layout == StateLayout::kXyzRpyOpenness) return kStateNames;
-  if (layout == StateLayout::kXyzRpyPadOpenness) return kPaddedStateNames;
+std::span<const Gr00tState> gr00t_states(StateLayout layout) {
+  if (layout == StateLayout::kXyzRpyOpenness) return kStates;
+  if (layout == StateLayout::kXyzRpyPadOpenness) return kPaddedStates;
+  if (layout == StateLayout::kLibero) return kLiberoStates;
   return {};
 }
 
@@ -127,11 +132,14 @@ wire::Value gr00t_observation(Gr00tForm form, const Profile& profile, const Requ
     video.emplace_back(is_nested ? gr00t_nested_image_key(image.key) : image.key,
                        led(image.pixels, form));
   }
-  const auto names = gr00t_state_names(profile.state_layout);
-  for (std::size_t i = 0; i < names.size() && i < request.state.size(); ++i) {
+  std::size_t begin = 0;
+  for (const Gr00tState& entry : gr00t_states(profile.state_layout)) {
+    if (begin + entry.count > request.state.size()) break;
+    const auto first = request.state.begin() + static_cast<std::ptrdiff_t>(begin);
+    const std::vector<double> numbers(first, first + static_cast<std::ptrdiff_t>(entry.count));
     const std::string prefix = is_nested ? "" : profile.state_key + ".";
-    state.emplace_back(prefix + std::string(names[i]),
-                       led(state_array(profile, {request.state[i]}), form));
+    state.emplace_back(prefix + std::string(entry.name), led(state_array(profile, numbers), form));
+    begin += entry.count;
   }
   const wire::List text{request.prompt};
   if (is_nested) {
@@ -189,11 +197,10 @@ Result<std::unique_ptr<Transport>> make_gr00t(const Profile& profile,
   } else if (profile.dialect == kNested) {
     form = Gr00tForm::kN16Nested;
   }
-  if (profile.state_layout != StateLayout::kNone &&
-      gr00t_state_names(profile.state_layout).empty()) {
+  if (profile.state_layout != StateLayout::kNone && gr00t_states(profile.state_layout).empty()) {
     return Failure{Fault::kUsage,
-                   "GR00T is sent its state number by number: `state.layout` is "
-                   "xyz_rpy_pad_openness, xyz_rpy_openness or none",
+                   "GR00T is sent its state entry by entry: `state.layout` is "
+                   "xyz_rpy_pad_openness, xyz_rpy_openness, libero or none",
                    "--policy"};
   }
   return std::unique_ptr<Transport>(std::make_unique<Gr00t>(profile, server, form));
@@ -209,9 +216,8 @@ std::vector<KeyUse> gr00t_key_uses(const Profile& profile) {
       use.key = gr00t_nested_image_key(use.key);
     }
   } else {
-    for (const std::string_view name : gr00t_state_names(profile.state_layout)) {
-      uses.push_back(state_key_use(profile.state_key + "." + std::string(name)));
-    }
+    for (const Gr00tState& entry : gr00t_states(profile.state_layout))
+      uses.push_back(state_key_use(profile.state_key + "." + std::string(entry.name)));
   }
   uses.push_back(prompt_key_use(profile));
   if (is_nested) uses.back().map = "language";

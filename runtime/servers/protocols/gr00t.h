@@ -15,13 +15,17 @@ namespace probe::servers {
 
 enum class Gr00tForm { kN16, kN16Nested, kN15 };
 
-// The observation of a "get_action". The state goes number by number under `state.key` and a
-// number's name: x, y, z, roll, pitch, yaw, pad, gripper.
+// The observation of a "get_action". The state goes entry by entry under `state.key` and an
+// entry's name: x, y, z, roll, pitch, yaw, pad, gripper.
 wire::Value gr00t_observation(Gr00tForm form, const Profile& profile, const Request& request);
 
-// What a state's numbers are called, each an entry of its own; none where GR00T is not sent such a
-// layout.
-std::span<const std::string_view> gr00t_state_names(StateLayout layout);
+// An entry of a state: what it is called, and how many of its numbers it holds.
+struct Gr00tState {
+  std::string_view name;
+  std::size_t count = 1;
+};
+// In the order of the numbers; none where GR00T is not sent such a layout.
+std::span<const Gr00tState> gr00t_states(StateLayout layout);
 // "video.image_0" is `image_0` in a map of its own in the nested form.
 std::string gr00t_nested_image_key(std::string_view key);
 

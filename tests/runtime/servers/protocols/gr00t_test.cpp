@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "runtime/base/sha256.h"
+#include "runtime/servers/servers.h"
 #include "runtime/wire/msgpack.h"
 #include "tests/hex.h"
 #include "tests/runtime/servers/asking.h"
@@ -75,6 +76,47 @@ TEST_CASE("GR00T's older form has one dimension less, the nested one maps of map
         std::vector<std::int64_t>{1, 1, 1, 2, 3});
   CHECK(nested.find("state")->find("x") != nullptr);
   CHECK(*nested.find("language")->find("text") == wire::Value(wire::List{wire::List{"go"}}));
+}
+
+TEST_CASE(
+    "a policy of LIBERO behind GR00T gets its state of eight in seven entries, both fingers one") {
+  for (const char* name : {"gr00t_libero", "gr00t_n15_libero"}) {
+    CAPTURE(std::string(name));
+    const auto choice =
+        choose_server(Protocol::kGr00t, "//127.0.0.1:5555?profile=" + std::string(name));
+    REQUIRE_MESSAGE(choice.ok(), to_text(choice.failure()));
+    const Profile& profile = choice->profile;
+    const bool is_old = profile.dialect == "n1.5";
+    Request request;
+    request.prompt = "turn on the stove";
+    for (const auto& image : profile.images)
+      request.images.push_back({image.key, wire::array_u8({1, 1, 3}, {1, 2, 3})});
+    request.state = {0.1, 0.2, 0.3, 1.1, 1.2, 1.3, 0.02, -0.03};
+    const wire::Value asked =
+        gr00t_observation(is_old ? Gr00tForm::kN15 : Gr00tForm::kN16, profile, request);
+    CHECK(asked.as<wire::Map>()->size() == 10);
+    CHECK(asked.find("video.image") != nullptr);
+    CHECK(asked.find("video.wrist_image") != nullptr);
+    CHECK(*asked.find("annotation.human.action.task_description") ==
+          wire::Value(wire::List{"turn on the stove"}));
+    const std::vector<std::pair<std::string, double>> alone = {
+        {"x", 0.1}, {"y", 0.2}, {"z", 0.3}, {"roll", 1.1}, {"pitch", 1.2}, {"yaw", 1.3}};
+    using Shape = std::vector<std::int64_t>;
+    for (const auto& [entry, number] : alone) {
+      const wire::Value* sent = asked.find("state." + entry);
+      REQUIRE(sent != nullptr);
+      CHECK(wire::shape_of(*sent) == (is_old ? Shape{1, 1} : Shape{1, 1, 1}));
+      CHECK(wire::to_numbers(*sent)->front() == doctest::Approx(number).epsilon(1e-7));
+    }
+    const wire::Value* fingers = asked.find("state.gripper");
+    REQUIRE(fingers != nullptr);
+    CHECK(wire::shape_of(*fingers) == (is_old ? Shape{1, 2} : Shape{1, 1, 2}));
+    CHECK(wire::to_numbers(*fingers)->back() == doctest::Approx(-0.03).epsilon(1e-7));
+  }
+  // Open is 1 of 0 .. 1 in its answers, a turn a vector, a whole number 5 cm or 0.5 rad.
+  const auto choice = choose_server(Protocol::kGr00t, "//127.0.0.1:5555?profile=gr00t_libero");
+  CHECK(choice->profile.action_gripper == GripperRange::kUnit);
+  CHECK(choice->profile.chunk_use == 8);
 }
 
 TEST_CASE("actions are rows of GR00T's columns, alone or beside an info map") {
