@@ -55,7 +55,12 @@ class Editor {
 
   Json initialized;
 
-  void raw(const std::string& message) { server_->receive(message); }
+  void raw(const std::string& message) {
+    sent_.push_back(message);
+    server_->receive(message);
+  }
+  // All that it said, in its order.
+  const std::vector<std::string>& sent() const { return sent_; }
   void tell(const std::string& method, Json params) {
     Json message = {{"jsonrpc", "2.0"}, {"method", method}};
     message["params"] = std::move(params);
@@ -139,6 +144,7 @@ class Editor {
   void forget() {
     const std::lock_guard lock(mutex_);
     messages_.clear();
+    sent_.clear();
   }
   std::vector<Json> messages() const {
     const std::lock_guard lock(mutex_);
@@ -148,6 +154,7 @@ class Editor {
  private:
   mutable std::mutex mutex_;
   std::vector<Json> messages_;
+  std::vector<std::string> sent_;
   std::unique_ptr<lsp::Server> server_;
   std::int64_t id_ = 0, version_ = 1;
 };
