@@ -47,6 +47,15 @@ check "its videos are the build's" bash -c 'cd "$1/built/videos" && find . -name
 check "its golden pictures are identical" bash -c '"$1" doctor | grep "golden pictures *\([0-9]*\) of \1 identical"' - "$work/linked"
 check "demo writes its report" "$work/linked" demo -o "$work/demo"
 check "every library has its licence" bash -c 'cd "$1" && ls lib | while read -r file; do grep -q "^lib/$file " LICENSES/packages.txt || exit 1; done' - "$bundle"
+check "every package of the pages has its licence" bash -c 'cd "$1/LICENSES" && for name in monaco-editor echarts zrender tslib fontsource-variable-inter; do
+  grep -q "^programs/ npm-$name " packages.txt && [ -s "npm-$name" ] || exit 1; done' - "$bundle"
+check "the studio serves its page" python3 -c 'import subprocess, sys, urllib.request
+studio = subprocess.Popen([sys.argv[1], "studio", sys.argv[2] + "/my.probe"], stdout=subprocess.PIPE, text=True)
+try:
+    page = studio.stdout.readline().strip()
+    assert len(urllib.request.urlopen(page + "page.js").read()) > 500000
+finally:
+    studio.terminate()' "$work/linked" "$work"
 check "no file names where it was built" bash -c '! grep -rlF "$1" "$2"' - "$here" "$bundle"
 
 # The image holds nothing but the folder: no shell, no system.

@@ -1,6 +1,7 @@
 #include "runtime/inspect/svg.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -184,8 +185,11 @@ class Page {
 
   void open() {
     put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-        "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\">\n",
+        "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\"",
         px(width_), px(height_));
+    // For programs that show it: the plot, and x px = zero x + scale * x m, y px = zero y - scale * y m.
+    put(" data-plot=\"{} {} {} {}\" data-scale=\"{}\" data-zero=\"{} {}\">\n", px(kLeft),
+        px(plot_top_), px(plot_width_), px(plot_height_), scale_, x(0), y(0));
     put("<title>{}</title>\n", escaped(view_.prompt));
     put("<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", px(width_), px(height_));
   }
@@ -266,7 +270,9 @@ class Page {
   void footprints(Role role) {
     for (const Footprint& print : view_.footprints) {
       if (print.role != role) continue;
-      put("<g fill=\"{0}\" stroke=\"{0}\"><title>{1} at ({2}, {3}) cm, yaw {4} deg{6}: starts "
+      put("<g data-object=\"{}\" data-at=\"{} {}\" data-starts=\"{}\" ", escaped(print.object),
+          print.at.x, print.at.y, fmt::join(print.starts, " "));
+      put("fill=\"{0}\" stroke=\"{0}\"><title>{1} at ({2}, {3}) cm, yaw {4} deg{6}: starts "
           "{5}</title>\n",
           colour(role), escaped(print.object), cm(print.at.x), cm(print.at.y),
           fmt::format("{}", std::nearbyint(print.yaw_deg * 10) / 10 + 0.0), ranges(print.starts),

@@ -29,6 +29,7 @@ constexpr Method kMethods[] = {
     {"textDocument/semanticTokens/full", answer_tokens},
     {"textDocument/semanticTokens/range", answer_tokens},
     {"textDocument/signatureHelp", answer_signature},
+    {"vlaprobe/move", answer_move},
     {"workspace/symbol", answer_workspace_symbols},
 };
 
@@ -63,6 +64,7 @@ Json capabilities() {
   out["inlayHintProvider"] = true;
   out["semanticTokensProvider"] = {
       {"legend", token_legend()}, {"full", true}, {"range", true}};
+  out["experimental"] = {{"vlaprobeMove", true}};
   out["diagnosticProvider"] = {{"identifier", "vlaprobe"},
                                {"interFileDependencies", true},
                                {"workspaceDiagnostics", false}};

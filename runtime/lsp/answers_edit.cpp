@@ -3,6 +3,7 @@
 
 #include "compiler/format/format.h"
 #include "compiler/language/fixes.h"
+#include "compiler/language/moved.h"
 #include "compiler/language/rename.h"
 #include "runtime/lsp/answers_impl.h"
 #include "runtime/lsp/common_ends.h"
@@ -24,6 +25,14 @@ Json difference(const language::Lines& lines, std::string_view before, std::stri
   out.push_back(text_edit(lines.range(begin, end),
                           std::string(after.substr(front, after.size() - back - front))));
   return out;
+}
+
+std::optional<std::array<double, 2>> read_pair(const Json& params, std::string_view key) {
+  const Json* given = params.find(key);
+  const bool is_pair = given != nullptr && given->is_array() && given->size() == 2 &&
+                       (*given)[0].is_number() && (*given)[1].is_number();
+  if (!is_pair) return std::nullopt;
+  return std::array{(*given)[0].get<double>(), (*given)[1].get<double>()};
 }
 
 Json edits_of(const language::Snapshot& snapshot, const std::vector<Replacement>& parts) {
@@ -175,6 +184,25 @@ Result<Json> answer_code_actions(Workspace& workspace, const Client& client, con
                    {"edit", edits_of(snapshot, all)}});
   }
   return out;
+}
+
+Result<Json> answer_move(Workspace& workspace, const Client&, const Json& params) {
+  PROBE_ASSIGN(const At at, text_of(workspace, params));
+  const auto from = read_pair(params, "from"), to = read_pair(params, "to");
+  if (!from || !to) return Failure{Fault::kUsage, "expected `from` and `to`, places in m", ""};
+  PROBE_ASSIGN(const std::vector<Replacement> parts,
+               language::moved(at.snapshot(), read_text(params, {"task"}),
+                               read_text(params, {"object"}), {*from, *to}));
+  for (const Replacement& part : parts) {
+    const std::string& path = at.snapshot().path(part.span.file);
+    if (!workspace.is_ours(path)) {
+      return Failure{Fault::kUsage,
+                     "where it stands is written in a text outside of the folder: " + path +
+                         "; a layout of its own would be written here",
+                     ""};
+    }
+  }
+  return edits_of(at.snapshot(), parts);
 }
 
 }  // namespace probe::lsp

@@ -38,5 +38,7 @@ Result<Json> answer_formatting(Workspace&, const Client&, const Json&);
 Result<Json> answer_prepare_rename(Workspace&, const Client&, const Json&);
 Result<Json> answer_rename(Workspace&, const Client&, const Json&);
 Result<Json> answer_code_actions(Workspace&, const Client&, const Json&);
+// Ours: {textDocument, task, object, from: [x, y], to: [x, y] in m} to a WorkspaceEdit.
+Result<Json> answer_move(Workspace&, const Client&, const Json&);
 
 }  // namespace probe::lsp

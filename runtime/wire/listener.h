@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -55,6 +56,7 @@ struct TlsFiles {
 struct Page {
   int status = 200;
   std::string type, body;
+  std::vector<std::pair<std::string, std::string>> headers = {};
 };
 using AnswerPage = std::function<std::optional<Page>(const std::string& target)>;
 

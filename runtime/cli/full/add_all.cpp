@@ -26,6 +26,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_export(program, exit);
   add_assets(program, exit);
   add_libero(program, exit);
+  add_studio(program, exit);
   add_doctor(program, exit);
   add_demo(program, exit);
   add_completion(program, exit);

@@ -26,6 +26,7 @@ void add_demos(Verb app, int& exit);
 void add_export(Verb app, int& exit);
 void add_assets(Verb app, int& exit);
 void add_libero(Verb app, int& exit);
+void add_studio(Verb app, int& exit);
 void add_doctor(Verb app, int& exit);
 void add_demo(Verb app, int& exit);
 void add_completion(Verb app, int& exit);

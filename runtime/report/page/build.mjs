@@ -5,6 +5,7 @@ import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { inputsOf, writeLicences } from "./licences.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2];
@@ -14,6 +15,7 @@ mkdirSync(out, { recursive: true });
 const require = createRequire(pathToFileURL(join(out, "package.json")));
 const esbuild = require("esbuild");
 
+const inputs = [];
 async function bundle(entry) {
   const result = await esbuild.build({
     entryPoints: [join(here, "src", entry)],
@@ -27,7 +29,10 @@ async function bundle(entry) {
     loader: { ".woff2": "dataurl" },
     nodePaths: [join(out, "node_modules")],
     logLevel: "warning",
+    metafile: true,
+    absWorkingDir: out,
   });
+  inputs.push(...inputsOf(result.metafile, out));
   return result.outputFiles[0].text.trim();
 }
 
@@ -73,6 +78,8 @@ const after = `<script>${script}</script>
 </body>
 </html>
 `;
+
+writeLicences(inputs, join(out, "node_modules"), out);
 
 // Raw literals in pieces that every compiler takes.
 function pieces(text) {

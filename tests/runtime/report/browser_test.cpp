@@ -1,43 +1,21 @@
 // The page in headless Chromium; what is looked at stands in runtime/report/page/test/browser.mjs.
 // Pages and screenshots are left in the build folder.
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <string>
+
+#include "tests/node_program.h"
 
 namespace {
-
-struct Outcome {
-  int status = -1;
-  std::string words;
-};
-
-Outcome look(const std::string& what) {
-  const std::string build = VLAPROBE_BINARY_DIR "/report_page";
-  const std::string command = "timeout 180 node '" VLAPROBE_SOURCE_DIR
-                              "/runtime/report/page/test/browser.mjs' '" +
-                              build + "' '" + build + "/shots' " + what + " 2>&1";
-  Outcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    outcome.words.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
 
 void check(const std::string& what) {
   if (!std::filesystem::exists("/usr/bin/chromium")) {
     MESSAGE("SKIPPED: the report page was not opened, chromium is not installed");
     return;
   }
-  const Outcome outcome = look(what);
+  const std::string build = VLAPROBE_BINARY_DIR "/report_page";
+  const auto outcome = probe::test::run_node("runtime/report/page/test/browser.mjs",
+                                             "'" + build + "' '" + build + "/shots' " + what);
   INFO(outcome.words);
   CHECK(outcome.status == 0);
   // Times, for whoever reads the log.
@@ -70,10 +48,5 @@ TEST_CASE("each of 75 truths is shown as it was") { check("truths"); }
 TEST_CASE("the page fits a narrow window") { check("narrow"); }
 
 TEST_CASE("the page's sources have the types they claim") {
-  const std::string build = VLAPROBE_BINARY_DIR "/report_page";
-  const std::string command = "cd '" + build + "' && node node_modules/typescript/bin/tsc -p '" +
-                              VLAPROBE_SOURCE_DIR
-                              "/runtime/report/page/tsconfig.json' --baseUrl '" +
-                              build + "/node_modules' >types.log 2>&1 || { cat types.log; false; }";
-  CHECK(std::system(command.c_str()) == 0);
+  CHECK(probe::test::check_types("runtime/report/page") == "");
 }

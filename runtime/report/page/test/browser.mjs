@@ -4,6 +4,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { lowContrast } from "./contrast.mjs";
 import { embed, kHostile, sample } from "./sample.mjs";
 
 const [build, out, name, given] = process.argv.slice(2);
@@ -67,28 +68,8 @@ async function checkPanels(page) {
   }
 }
 
-// Contrast of every visible text with what is behind it (WCAG 2.1, 1.4.3).
 async function checkContrast(page, theme) {
-  const low = await page.evaluate(() => {
-    const numbers = (color) => { const m = color.match(/[\d.]+/g).map(Number); return { rgb: m.slice(0, 3), a: m[3] ?? 1 }; };
-    const luminance = ([r, g, b]) => { const c = [r, g, b].map((v) => (v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4)); return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
-    const found = new Set();
-    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-    while (walker.nextNode()) {
-      const element = walker.currentNode.parentElement;
-      if (!walker.currentNode.data.trim() || element.closest("script, noscript, .unseen, .skip, option, [aria-hidden=true]")) continue;
-      if (!element.getClientRects().length) continue;
-      const style = getComputedStyle(element);
-      let ground = element;
-      while (ground && numbers(getComputedStyle(ground).backgroundColor).a < 1) ground = ground.parentElement;
-      const inSvg = element instanceof SVGElement;
-      const a = luminance(numbers(inSvg ? style.fill : style.color).rgb), b = luminance(numbers(ground ? getComputedStyle(ground).backgroundColor : "rgb(255,255,255)").rgb);
-      const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-      if (ratio < 4.5) found.add(`${ratio.toFixed(2)} ${element.tagName}.${element.getAttribute("class")} in ${element.closest("section, aside, header, footer")?.id ?? "?"}: ${walker.currentNode.data.slice(0, 30)}`);
-    }
-    return [...found];
-  });
-  for (const text of low.slice(0, 8)) wrong.push(`contrast, ${theme}: ${text}`);
+  for (const text of (await lowContrast(page)).slice(0, 8)) wrong.push(`contrast, ${theme}: ${text}`);
 }
 
 const focused = (page) => page.evaluate(() => { const e = document.activeElement; return { tag: e.tagName, text: e.textContent?.slice(0, 60), type: e.type ?? "", id: e.id, panel: e.closest("section, aside")?.id ?? "", label: e.getAttribute("aria-label") ?? "", visible: !!e.getClientRects().length, className: e.getAttribute("class") ?? "" }; });

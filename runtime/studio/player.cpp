@@ -1,0 +1,182 @@
+#include "runtime/studio/player.h"
+
+#include <stdlib.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "runtime/base/clock.h"
+#include "runtime/rejudge/explain.h"
+#include "runtime/rejudge/explain_json.h"
+#include "runtime/run/episode.h"
+#include "runtime/run/policies.h"
+#include "runtime/studio/message.h"
+
+namespace probe::studio {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostUnread = std::size_t{4} << 20;  // bytes; about three pictures
+
+// A folder for the trace, gone with this.
+class ScratchFolder {
+ public:
+  static Result<std::unique_ptr<ScratchFolder>> make() {
+    std::error_code error;
+    std::string path = (fs::temp_directory_path(error) / "vlaprobe-studio-XXXXXX").string();
+    if (error || ::mkdtemp(path.data()) == nullptr)
+      return Failure{Fault::kIo, "cannot be made", path};
+    return std::make_unique<ScratchFolder>(path);
+  }
+  explicit ScratchFolder(std::string path) : path_(std::move(path)) {}
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  std::string file(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+// Tells the page of each step and keeps the state that it can be drawn from again.
+class Player::Watcher final : public show::FrameSink {
+ public:
+  Watcher(const Player& player, Episode& episode) : player_(player), episode_(episode) {}
+
+  Status frame(std::span<const stage::CameraFrame> frames, int step,
+               std::span<const store::MetricValue> metrics) override {
+    if (player_.stop_) return Failure{Fault::kUsage, "stopped", ""};
+    episode_.states.push_back(episode_.stage->save());
+    Json values = Json::array();
+    for (const store::MetricValue& metric : metrics) values.push_back(metric.value);
+    Json json = {{"kind", "step"}, {"step", step}, {"values", std::move(values)}};
+    if (player_.unread_() > kMostUnread) {
+      player_.say(std::move(json));
+    } else {
+      player_.tell_(picture_message(std::move(json), frames));
+    }
+    return {};
+  }
+
+ private:
+  const Player& player_;
+  Episode& episode_;
+};
+
+Player::~Player() { stop(); }
+
+void Player::stop() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Player::say(Json json) const { tell_(message(json)); }
+
+void Player::play(std::shared_ptr<const Shown> shown, PlayWish wish) {
+  stop();
+  stop_ = false;
+  thread_ = std::thread([this, shown = std::move(shown), wish = std::move(wish)] {
+    run(shown, wish);
+  });
+}
+
+void Player::run(std::shared_ptr<const Shown> shown, const PlayWish& wish) {
+  auto episode = std::make_unique<Episode>();
+  episode->shown = std::move(shown);
+  auto played = play_whole(wish, *episode);
+  if (!played) return say({{"kind", "stopped"}, {"message", to_text(played.failure())}});
+  {
+    const std::lock_guard lock(mutex_);
+    episode_ = std::move(episode);
+  }
+  say(std::move(*played));  // from now on it can be looked at
+}
+
+Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
+  const plan::Plan& plan = episode.shown->plan;
+  const auto task = plan.find_task(wish.task);
+  if (!task) return Failure{Fault::kUsage, "is not in the text any more", wish.task};
+  const plan::TaskRecord& record = plan.tasks()[*task];
+  if (wish.start >= record.episodes.count)
+    return Failure{Fault::kUsage, "has no start " + std::to_string(wish.start), wish.task};
+  episode.task = *task;
+  episode.wish = wish;
+  PROBE_ASSIGN(const auto choice, run::choose_policy(wish.policy));
+  if (choice.traits.recorded)
+    return Failure{Fault::kUsage, "has the actions of a run, which is of another plan", wish.policy};
+  PROBE_ASSIGN(const auto policy, run::make_policy(choice));
+  const std::uint32_t tasks[] = {*task};
+  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, episode.shown->asset_root, tasks));
+  PROBE_ASSIGN(episode.stage, stage::Stage::create(plan, *task, assets));
+  const run::EpisodeJob job{*task, wish.start, wish.seed};
+  const store::TraceHeader header =
+      run::make_trace_header(plan, job, *episode.stage, wish.policy, "");
+  Json names = Json::array();
+  for (const store::TraceHeader::Metric& metric : header.metrics)
+    names.push_back({{"name", metric.name}, {"truth", metric.is_bool}});
+  say({{"kind", "playing"},
+       {"task", header.task},
+       {"start", wish.start},
+       {"policy", wish.policy},
+       {"prompt", header.prompt},
+       {"horizon", header.horizon},
+       {"hz", header.control_hz},
+       {"metrics", std::move(names)}});
+  PROBE_ASSIGN(const auto scratch, ScratchFolder::make());
+  const std::string path = scratch->file("episode.trace");
+  PROBE_ASSIGN(const auto trace, store::TraceWriter::create(path, header));
+  Watcher watcher(*this, episode);
+  const auto begun = std::chrono::steady_clock::now();
+  PROBE_ASSIGN(const run::Played played,
+               run::run_episode(*episode.stage, plan, job, wish.policy, *policy, *trace, &watcher));
+  PROBE_ASSIGN(episode.trace, store::read_trace(path));
+  Json said = {{"kind", "played"},
+               {"steps", played.row.steps},
+               {"invalid", played.row.invalid ? Json(*played.row.invalid) : Json()},
+               {"remark", played.row.remark ? Json(*played.row.remark) : Json()},
+               {"seconds", seconds_since(begun)}};
+  Json values = Json::array();
+  for (const store::MetricValue& metric : played.row.metrics) values.push_back(metric.value);
+  said["values"] = std::move(values);
+  if (played.row.remark) episode.remark = *played.row.remark;
+  return said;
+}
+
+void Player::look(int step) {
+  const std::lock_guard lock(mutex_);
+  if (episode_ == nullptr || step < 0 ||
+      static_cast<std::size_t>(step) >= episode_->states.size())
+    return;
+  stage::Stage& stage = *episode_->stage;
+  auto restored = stage.restore(episode_->states[static_cast<std::size_t>(step)]);
+  if (!restored) return say({{"kind", "stopped"}, {"message", to_text(restored.failure())}});
+  const auto seen = stage.observe();
+  if (!seen) return say({{"kind", "stopped"}, {"message", to_text(seen.failure())}});
+  tell_(picture_message({{"kind", "moment"}, {"step", step}}, stage.frames()));
+}
+
+void Player::why(const std::string& metric) {
+  const std::lock_guard lock(mutex_);
+  if (episode_ == nullptr) return say({{"kind", "why"}, {"message", "no episode was played"}});
+  auto metrics =
+      rejudge::explain(episode_->shown->plan, episode_->task, episode_->trace, metric);
+  if (!metrics) return say({{"kind", "why"}, {"message", to_text(metrics.failure())}});
+  rejudge::EpisodeWhy why;
+  why.task = episode_->trace.header.task;
+  why.episode = episode_->trace.header.episode;
+  why.seed = episode_->trace.header.seed;
+  why.steps = static_cast<int>(episode_->trace.steps.size());
+  if (!episode_->remark.empty()) why.remark = episode_->remark;
+  why.metrics = std::move(*metrics);
+  Json json = rejudge::to_json(why);
+  json["kind"] = "why";
+  say(std::move(json));
+}
+
+}  // namespace probe::studio
