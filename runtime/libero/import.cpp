@@ -465,7 +465,7 @@ class LiberoImport {
           fmt::format("probing.probe, which asks all {} tasks: {} are there", all, asked_.size()));
       return {};
     }
-    const SuiteText text = write_probing(written_, asked_, things_);
+    const SuiteText text = write_probing(written_, asked_, things_, rooms_);
     for (const SuiteText::Table& table : text.tables)
       PROBE_TRY(write(table.path, table.text, "init_files"));
     PROBE_TRY(write_allowed("probing.probe", text.text));

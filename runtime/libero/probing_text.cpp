@@ -23,12 +23,15 @@ constexpr std::string_view kSources[] = {"bowls",   "mugs",  "cans", "bottles",
                                          "cartons", "boxes", "books"};
 struct PlaceRow {
   std::string_view scene, set;
+  std::string_view elsewhere;  // whose room it is shown in instead
 };
-constexpr PlaceRow kPlaces[] = {{"libero_tabletop", "at_table"},
-                                {"libero_kitchen", "at_table"},
-                                {"libero_study", "at_study"},
-                                {"libero_living_room", "at_living"},
-                                {"libero_floor", "at_floor"}};
+constexpr PlaceRow kPlaces[] = {{"libero_tabletop", "at_table", "libero_study"},
+                                {"libero_kitchen", "at_table", "libero_living_room"},
+                                {"libero_study", "at_study", "libero_kitchen"},
+                                {"libero_living_room", "at_living", "libero_kitchen"},
+                                {"libero_floor", "at_floor", "libero_kitchen"}};
+
+std::string shown_elsewhere(const WrittenTask& task) { return task.stage + "_elsewhere"; }
 
 class TaskAsker {
  public:
@@ -71,7 +74,8 @@ class TaskAsker {
     });
   }
 
-  std::string text(std::vector<SuiteText::Table>& tables) const {
+  // `is_shown`: there is a scene in another room.
+  std::string text(std::vector<SuiteText::Table>& tables, bool is_shown) const {
     const std::string& id = task_.written.id;
     const std::string_view what = kind();
     const bool is_put = what == "lays" || what == "fills";
@@ -87,6 +91,9 @@ class TaskAsker {
     };
     add("moved", fmt::format("like {} {{ jitter 1cm }}", id), "");
     add("shaken", fmt::format("like {} {{ joints jitter 3deg }}", id), "");
+    if (is_shown)
+      variants +=
+          fmt::format("  {}_elsewhere {{ scene {} }}\n", id, shown_elsewhere(task_.written));
     if (is_put) {
       const std::string plain = fmt::format("put the {} {} the {}", name_of_object(roles_.source),
                                             what == "lays" ? "on" : "in", target_name());
@@ -233,20 +240,27 @@ class TaskAsker {
 }  // namespace
 
 SuiteText write_probing(const std::vector<std::string>& suites, const std::vector<AskedTask>& tasks,
-                        const Things& things) {
+                        const Things& things, const std::set<std::string>& rooms) {
   SuiteText out;
   std::map<std::string_view, std::vector<std::string>> sets;
   for (const std::string_view kind : kKinds) sets[kind];
   for (const std::string_view source : kSources) sets[source];
   for (const PlaceRow& row : kPlaces) sets[row.set];
   sets["twins"];
-  std::string body;
+  std::string body, stages;
+  std::set<std::string_view> shown;
   for (const AskedTask& task : tasks) {
     const TaskAsker asker(task, things);
-    body += asker.text(out.tables);
-    sets[asker.kind()].push_back(task.written.id);
     const auto place = std::ranges::find(kPlaces, task.written.scene, &PlaceRow::scene);
-    if (place != std::end(kPlaces)) sets[place->set].push_back(task.written.id);
+    const bool is_known = place != std::end(kPlaces);
+    const bool is_shown = is_known && rooms.contains(std::string(place->scene)) &&
+                          rooms.contains(std::string(place->elsewhere));
+    if (is_shown && shown.insert(task.written.stage).second)
+      stages += fmt::format("scene {} like {} {{ backdrop \"{}\" }}\n",
+                            shown_elsewhere(task.written), task.written.stage, place->elsewhere);
+    body += asker.text(out.tables, is_shown);
+    sets[asker.kind()].push_back(task.written.id);
+    if (is_known) sets[place->set].push_back(task.written.id);
     if (const std::string_view source = asker.source_set(); !source.empty())
       sets[source].push_back(task.written.id);
     if (asker.has_twins()) sets["twins"].push_back(task.written.id);
@@ -257,7 +271,9 @@ SuiteText write_probing(const std::vector<std::string>& suites, const std::vecto
       "their own where a question needs them.\n# What is asked stands in "
       "suite/libero/asked.probe.\n";
   for (const std::string& suite : suites) out.text += fmt::format("use \"{}.probe\"\n", suite);
-  out.text += "use \"suite/libero/asked.probe\"\n\n" + body;
+  out.text += "use \"suite/libero/asked.probe\"\n\n";
+  if (!stages.empty()) out.text += stages + "\n";
+  out.text += body;
   for (const auto& [set, members] : sets)
     out.text += fmt::format("set {} = {{ {} }}\n", set, fmt::join(members, ", "));
   // Here, where those above are seen as well.

@@ -112,7 +112,8 @@ class SuiteWriter {
       if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     }
     names_.push_back(name);
-    out_.tasks.push_back({id, name, std::string(stage.row->scene), out_.tables.back().text, goal});
+    out_.tasks.push_back(
+        {id, name, std::string(stage.row->scene), stage.scene, out_.tables.back().text, goal});
     const std::string instruction = instruction_of(task.stem);
     std::string other = task.problem.language;
     for (char& c : other) {

@@ -33,6 +33,7 @@ struct WrittenTask {
   std::string id;     // of its layout, its metrics and its table: "libero_goal_03"
   std::string name;   // "open_the_top_drawer_and_put_the_bowl_inside"
   std::string scene;  // of suite/libero/stage.probe: "libero_tabletop"
+  std::string stage;  // its own, with its room and fixtures: "libero_goal_tabletop"
   std::string table;  // of its starts
   std::string goal;   // "in_site(source, target) and drawer_closed(white_cabinet_1.cabinet_bottom)"
 };

@@ -415,7 +415,7 @@ TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a chec
   for (const char* const axis :
        {"language.action", "language.paraphrase", "language.appearance", "language.commonsense",
         "language.spatial", "language.negation", "object.source", "distractors", "layout", "light",
-        "camera", "sensor", "robot", "latency"}) {
+        "camera", "sensor", "robot", "latency", "scene"}) {
     CHECK_MESSAGE(moved[axis] > 20, axis, " ", moved[axis]);
   }
   CHECK(plan->tasks().size() > 3000);
