@@ -1,6 +1,7 @@
 # probe_npm(SOURCE BUILD WHAT [option..]): installs the packages of SOURCE/package-lock.json, exactly those, into
 # BUILD/node_modules, from npm's cache where it has them, so a build without network works after the first. What needs them
 # depends on BUILD/node_modules/.package-lock.json. WHAT says in a mistake whose packages they are.
+include_guard(GLOBAL)
 find_program(VLAPROBE_NPM npm)
 find_program(VLAPROBE_NODE NAMES node nodejs)
 if(NOT VLAPROBE_NPM OR NOT VLAPROBE_NODE)

@@ -56,3 +56,28 @@ TEST_CASE("the extension's parts are there and refer to one another") {
   }
   CHECK(contributes["grammars"][0]["scopeName"] == "source.probe");
 }
+
+TEST_CASE("the packed extension is whole, with its licences, and registers what lenses name") {
+  const std::filesystem::path made = std::filesystem::path(VLAPROBE_BINARY_DIR) / "vscode";
+  if (!std::filesystem::exists(made / "probe-language.vsix")) {
+    MESSAGE("SKIPPED: build/vscode/probe-language.vsix is not here (ninja vscode_extension)");
+    return;
+  }
+  const std::string notices = read(made / "stage/THIRD_PARTY_LICENSES.txt");
+  for (const char* package : {"vscode-languageclient 11.0.0", "vscode-jsonrpc ",
+                              "vscode-languageserver-protocol ", "semver ", "minimatch "})
+    CHECK_MESSAGE(notices.find(package) != notices.npos, package);
+  // The grammar inside is the one that is tested above.
+  CHECK(read(made / "stage/syntaxes/probe.tmLanguage.json") ==
+        read(kExtension / "syntaxes/probe.tmLanguage.json"));
+  const auto loaded = [&](const std::string& program) {
+    const std::string told = (made / "loaded.txt").string();
+    const std::string line = "timeout 60 node '" + (kExtension / "load.test.mjs").string() + "' '" +
+                             (made / "stage").string() + "' '" + program + "' >'" + told + "' 2>&1";
+    CHECK(std::system(line.c_str()) == 0);
+    return read(told);
+  };
+  const std::string absent = loaded("/no/such/vlaprobe");
+  CHECK_MESSAGE(absent.find("registered 5; said: ") != absent.npos, absent);
+  CHECK_MESSAGE(absent.find("vlaprobe could not be started") != absent.npos, absent);
+}
