@@ -79,13 +79,13 @@ void check_fixture_places(const Model& model, Travels& travels, Reporter& report
     if (scene.broken) continue;
     for (const FixtureId id : scene.fixtures) {
       const Fixture& fixture = model.fixtures[id];
-      const auto& travel = travels.of(id);
+      const auto& travel = travels.of(scene, id);
       if (!travel) continue;
       const About about(reporter, fixture.span);
       check_surface_below(scene, fixture, *travel, reporter);
       bool is_first = false;  // behind itself in the list
       for (const FixtureId other : scene.fixtures) {
-        const auto& other_travel = travels.of(other);
+        const auto& other_travel = travels.of(scene, other);
         if (other == id) {
           is_first = true;
         } else if (other_travel) {

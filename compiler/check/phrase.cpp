@@ -283,6 +283,20 @@ struct TaskLanguage {
     return false;
   }
 
+  void absent_fixture(const SlotRef& slot, const std::string& what,
+                      const std::string& fixture) const {
+    report_of(reporter, Situation::kAbsentSlot, task, slot.span,
+              what + " is not in the scene of `" + task.name + "`")
+        .help("a scene names its fixtures: `fixture " + fixture + "`");
+  }
+
+  void check_fixture_slot(const SlotRef& slot, FixtureId id) const {
+    const auto& here = model.scenes[task.scene].fixtures;
+    if (std::ranges::find(here, id) != here.end()) return;
+    if (task.keeps_absent && !task.allow_absent) return;
+    absent_fixture(slot, "fixture `" + model.fixtures[id].name + "`", model.fixtures[id].name);
+  }
+
   void check_slot(const SlotRef& slot) const {
     if (slot.avoid && !check_avoided(slot)) return;
     if (slot.role != RoleId::kNone) {
@@ -299,6 +313,7 @@ struct TaskLanguage {
       }
       return;
     }
+    if (const auto fixture = fixture_of(model, slot)) return check_fixture_slot(slot, *fixture);
     for (const ObjectId id : task.objects()) {
       const Object& object = model.objects[id];
       if (object.name == slot.name.text) return check_category(slot, object);
@@ -315,10 +330,8 @@ struct TaskLanguage {
       if (std::ranges::find(here, object.of->fixture) != here.end())
         return check_category(slot, object);
       const std::string& fixture = model.fixtures[object.of->fixture].name;
-      report_of(reporter, Situation::kAbsentSlot, task, slot.span,
-                "\"" + object.text.text + "\" names a part of `" + fixture +
-                    "`, which is not in the scene of `" + task.name + "`")
-          .help("a scene names its fixtures: `fixture " + fixture + "`");
+      absent_fixture(slot, "\"" + object.text.text + "\" names a part of `" + fixture + "`, which",
+                     fixture);
       return;
     }
     const std::string words = (slot.avoid ? "not " : "") +

@@ -43,13 +43,13 @@ class Travels {
   // The model must live as long.
   Travels(const Model& model, std::string asset_root)
       : model_(model), asset_root_(std::move(asset_root)) {}
-  const std::optional<Travel>& of(FixtureId id);
+  const std::optional<Travel>& of(const Scene& scene, FixtureId id);
   const std::vector<ArmLink>& arm(SceneId id);
 
  private:
   const Model& model_;
   std::string asset_root_;
-  std::map<FixtureId, std::optional<Travel>> known_;
+  std::map<std::pair<FixtureId, double>, std::optional<Travel>> known_;  // by lift
   std::map<SceneId, std::vector<ArmLink>> arms_;
 };
 

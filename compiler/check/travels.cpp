@@ -39,9 +39,9 @@ std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const std::s
 
 }  // namespace
 
-const std::optional<Travel>& Travels::of(FixtureId id) {
-  const auto [known, is_new] = known_.try_emplace(id);
-  if (is_new) known->second = Travel::of(model_.fixtures[id], asset_root_);
+const std::optional<Travel>& Travels::of(const Scene& scene, FixtureId id) {
+  const auto [known, is_new] = known_.try_emplace({id, scene.fixtures_lift});
+  if (is_new) known->second = Travel::of(scene, model_.fixtures[id], asset_root_);
   return known->second;
 }
 
@@ -59,11 +59,12 @@ std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& trav
   }
   std::ptrdiff_t at = 0;
   std::vector<BegunFixture> begun;
-  for (const FixtureId id : starts.model.scenes[starts.task.scene].fixtures) {
+  const Scene& scene = starts.model.scenes[starts.task.scene];
+  for (const FixtureId id : scene.fixtures) {
     const Fixture& fixture = starts.model.fixtures[id];
     const std::ptrdiff_t from = at;
     at += static_cast<std::ptrdiff_t>(fixture.joints.size());
-    const auto& travel = travels.of(id);
+    const auto& travel = travels.of(scene, id);
     if (!travel) continue;
     BegunFixture one{fixture, *travel, {}};
     for (const std::vector<double>& joints : all)

@@ -6,6 +6,7 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/role.h"
+#include "compiler/define/starts.h"
 #include "compiler/define/task.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
@@ -86,19 +87,29 @@ bool same_layout(const Layout& a, const Layout& b) {
   return true;
 }
 
-// Whether the joints that a file of starts says for arms begin alike.
-bool same_given_arms(const Layout& a, const Layout& b) {
-  const auto arms_of = [](const Layout& layout) {
-    std::vector<std::vector<GivenJoint>> arms = layout.given_joints;
-    for (std::vector<GivenJoint>& start : arms) {
-      std::erase_if(start, [](const GivenJoint& joint) { return joint.robot == RobotId::kNone; });
-    }
-    std::erase_if(arms, [](const std::vector<GivenJoint>& start) { return start.empty(); });
-    return arms;
-  };
+// Where the joints of a task's arm begin that its file of starts says, start by start: what repeats
+// the scene says nothing.
+std::vector<std::vector<GivenJoint>> given_arms(const Model& model, const Task& task) {
+  const Scene& scene = model.scenes[task.scene];
+  std::vector<std::vector<GivenJoint>> arms = model.layouts[task.layout].given_joints;
+  for (std::vector<GivenJoint>& start : arms) {
+    std::erase_if(start, [&](const GivenJoint& joint) {
+      return joint.robot == RobotId::kNone ||
+             (joint.robot == scene.robot && joint.joint < scene.joints.size() &&
+              joint.value == scene.joints[joint.joint].si());
+    });
+  }
+  return arms;
+}
+
+// Whether those of two tasks begin alike. A list without such rows is as long as any.
+bool same_given_arms(const Model& model, const Task& a, const Task& b) {
+  std::vector<std::vector<GivenJoint>> here = given_arms(model, a), there = given_arms(model, b);
+  const std::size_t longest = std::max(here.size(), there.size());
+  here.resize(longest);
+  there.resize(longest);
   return std::ranges::equal(
-      arms_of(a), arms_of(b),
-      [](const std::vector<GivenJoint>& p, const std::vector<GivenJoint>& q) {
+      here, there, [](const std::vector<GivenJoint>& p, const std::vector<GivenJoint>& q) {
         return std::ranges::equal(
             p, q, [](const GivenJoint& x, const GivenJoint& y) { return x.is_same(y); });
       });
@@ -154,14 +165,6 @@ bool same_covers(const Scene& a, const Scene& b) {
                     });
 }
 
-// At the same place, or as high above another surface.
-bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::array<double, 3>& b,
-                  double surface_b) {
-  constexpr double kRounding = 1e-9;  // m
-  return a[0] == b[0] && a[1] == b[1] &&
-         (a[2] == b[2] || std::abs((a[2] - surface_a) - (b[2] - surface_b)) <= kRounding);
-}
-
 // Camera, light, textures and the surface's height are axes of their own.
 bool same_scene(const Model& model, const Scene& a, const Scene& b) {
   const auto joints = [](const Scene& scene) {
@@ -208,11 +211,6 @@ bool is_same_body(const Object& a, const Object& b) {
          a.density == b.density && a.mass == b.mass && a.friction == b.friction;
 }
 
-// How many objects have a role.
-std::size_t roles_filled(const Task& task) {
-  return task.objects().size() - task.distractors.size() - task.placed.size();
-}
-
 // The same roles are filled, each by as many objects.
 bool same_shape(const Task& a, const Task& b) {
   const auto same_number = [](const Task::Filled& p, const Task::Filled& q) {
@@ -231,7 +229,7 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !same_choice(a, b) ||
       (a.scene != b.scene && !is_same_place(model, model.scenes[a.scene], model.scenes[b.scene])) ||
       layout.joints_jitter != model.layouts[b.layout].joints_jitter ||
-      !same_given_arms(layout, model.layouts[b.layout]) || a.delay != b.delay ||
+      !same_given_arms(model, a, b) || a.delay != b.delay ||
       !same_motions(model, a, b) || !same_sensors(model, a, b) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) ||
@@ -334,7 +332,7 @@ class Comparison {
       case plan::Axis::kRobot:
         return model_.layouts[task_.layout].joints_jitter !=
                    model_.layouts[baseline_.layout].joints_jitter ||
-               !same_given_arms(model_.layouts[task_.layout], model_.layouts[baseline_.layout]);
+               !same_given_arms(model_, task_, baseline_);
       case plan::Axis::kLatency:
         return task_.delay != baseline_.delay;
       case plan::Axis::kMotion:

@@ -459,6 +459,8 @@ class Derive {
       return true;
     }
     symbols.derived_names.push_back(std::move(name));
+    const bool has_number = std::ranges::any_of(
+        bindings, [](const Binding& binding) { return binding.number.has_value(); });
     const auto index = static_cast<std::uint32_t>(symbols.task_decls.size());
     const syntax::Name like{span, symbols.task_decls[static_cast<std::size_t>(base)].name.text};
     DeclaredTask task{declared_.file, declared_.decl, {span, symbols.derived_names.back()},
@@ -469,6 +471,13 @@ class Derive {
     table_.add_row();
     table_.define(index, static_cast<std::uint32_t>(base));
     table_.compare(index, true);
+    // A number that the task has already, such as no distractors, is no choice.
+    const Task& made = context_.model.tasks[static_cast<TaskId>(index)];
+    if (has_number && made.complete && made.axes == 0) {
+      table_.drop_last_row();
+      symbols.task_decls.pop_back();
+      symbols.tasks.forget_last();
+    }
     return true;
   }
 

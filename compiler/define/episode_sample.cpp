@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "compiler/define/starts.h"
 #include "runtime/base/sha256.h"
 
 namespace probe::sema {
@@ -129,22 +130,6 @@ class Sampler {
 };
 
 }  // namespace
-
-bool starts_correspond(const Task& a, const Task& b) {
-  if (a.scene != b.scene || a.starts.size() != b.starts.size()) return false;
-  const auto in_roles = [](const Task& task) {
-    return task.objects().size() - task.distractors.size() - task.placed.size();
-  };
-  const std::size_t roles = in_roles(a);
-  if (roles != in_roles(b)) return false;
-  return std::equal(
-      a.starts.begin(), a.starts.end(), b.starts.begin(), [&](const Start& p, const Start& q) {
-        return std::equal(p.placed.begin(), p.placed.begin() + static_cast<std::ptrdiff_t>(roles),
-                          q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
-                            return x.x == y.x && x.y == y.y;
-                          });
-      });
-}
 
 void sample_episodes(Context& context, const std::vector<EpisodeSample>& samples, Suite& suite) {
   Sampler(context, suite).run(samples);

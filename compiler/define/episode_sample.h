@@ -17,9 +17,4 @@ struct EpisodeSample {
 // task and its number, so another task or start changes at most one of the choice.
 void sample_episodes(Context& context, const std::vector<EpisodeSample>& samples, Suite& suite);
 
-// Whether the starts of two tasks correspond one by one: what is compared is then compared start by
-// start, else only in the mean. As the report pairs them: one scene, as many starts, and what fills
-// roles at the same places.
-bool starts_correspond(const Task& a, const Task& b);
-
 }  // namespace probe::sema

@@ -256,18 +256,35 @@ std::vector<double> joint_starts_in_all(const Model& model, const Task& task) {
   return all;
 }
 
-bool same_fixture(const Fixture& a, const Fixture& b) {
+bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::array<double, 3>& b,
+                  double surface_b) {
+  constexpr double kRounding = 1e-9;  // m
+  return a[0] == b[0] && a[1] == b[1] &&
+         (a[2] == b[2] || std::abs((a[2] - surface_a) - (b[2] - surface_b)) <= kRounding);
+}
+
+namespace {
+
+// Whether both act and are felt alike.
+bool acts_alike(const Fixture& a, const Fixture& b) {
   const auto same_joint = [](const Fixture::Joint& x, const Fixture::Joint& y) {
     return x.name == y.name && x.friction == y.friction && x.damping == y.damping &&
            x.stiffness == y.stiffness && x.rest == y.rest && x.armature == y.armature;
   };
-  return a.urdf.text == b.urdf.text && a.position == b.position && a.turn == b.turn &&
-         a.friction == b.friction && std::ranges::equal(a.joints, b.joints, same_joint);
+  return a.urdf.text == b.urdf.text && a.turn == b.turn && a.friction == b.friction && std::ranges::equal(a.joints, b.joints, same_joint);
 }
 
+}  // namespace
+
 bool same_fixtures(const Model& model, const Scene& a, const Scene& b) {
+  const auto place_in = [&](const Scene& scene, FixtureId id) {
+    std::array<double, 3> place = model.fixtures[id].position;
+    place[2] += scene.fixtures_lift;
+    return place;
+  };
   return std::ranges::equal(a.fixtures, b.fixtures, [&](FixtureId x, FixtureId y) {
-    return x == y || same_fixture(model.fixtures[x], model.fixtures[y]);
+    return (x == y || acts_alike(model.fixtures[x], model.fixtures[y])) &&
+           stands_alike(place_in(a, x), a.surface_z, place_in(b, y), b.surface_z);
   });
 }
 

@@ -27,8 +27,10 @@ std::vector<double> joint_starts_of(const Model& model, const Task& task, const 
 // Of all starts one after the other where a file says joints of fixtures, else of all at once.
 std::vector<double> joint_starts_in_all(const Model& model, const Task& task);
 
-// Whether both act, stand and are felt alike.
-bool same_fixture(const Fixture& a, const Fixture& b);
+// At the same place, or as high above another surface.
+bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::array<double, 3>& b,
+                  double surface_b);
+// Whether the fixtures of both scenes act, stand and are felt alike.
 bool same_fixtures(const Model& model, const Scene& a, const Scene& b);
 
 }  // namespace probe::sema

@@ -20,7 +20,7 @@ struct SceneReader {
   Context& context;
   Scene& scene;
   bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
-  bool has_joints = false, has_fixture = false;
+  bool has_joints = false, has_fixture = false, has_fixtures = false;
   Span fixture_region = {};
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
@@ -82,7 +82,9 @@ struct SceneReader {
                       {"`fixture ... at` takes lengths", plan::Magnitude::kPlace}));
   }
   void operator()(const syntax::SceneFixturesStmt& stmt) {
+    has_fixtures = true;
     scene.fixtures.clear();
+    scene.fixtures_lift = 0;
     for (const syntax::Name& name : stmt.fixtures) {
       const auto found = context.symbols.fixtures.find(name, context.diagnostics);
       if (!found) continue;
@@ -301,8 +303,11 @@ void define_scenes(Context& context) {
     for (const syntax::SceneStmt& stmt : declared.node->body) std::visit(reader, stmt);
     if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
     // What was copied stands on the surface as it stood there.
-    if (declared.node->like && reader.has_surface && scene.fixture && !reader.has_fixture)
-      scene.fixture_position[2] += scene.surface_z - copied_z;
+    if (declared.node->like && reader.has_surface) {
+      const double rise = scene.surface_z - copied_z;
+      if (scene.fixture && !reader.has_fixture) scene.fixture_position[2] += rise;
+      if (!reader.has_fixtures) scene.fixtures_lift += rise;
+    }
     if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
     if (reader.has_cameras) scene.cameras_z = scene.surface_z;
     if (!reader.fixture_region.is_none() && !scene.fixture) {

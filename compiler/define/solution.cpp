@@ -45,6 +45,14 @@ SkillThing of_fixture(const Model& model, FixtureId id, const std::string& name)
     thing.part = i;
     return thing;
   }
+  // A joint stands for the part that it moves, as in measures; of several the first.
+  for (std::uint32_t i = 0; i < fixture.parts.size() && !name.empty(); ++i) {
+    const Fixture::Part& part = fixture.parts[i];
+    if (!part.joint || fixture.joints[*part.joint].name != name) continue;
+    thing.kind = Kind::kPart;
+    thing.part = i;
+    return thing;
+  }
   for (const Fixture::OwnRegion& own : fixture.regions) {
     if (own.region.name != name) continue;
     thing.kind = Kind::kRegion;

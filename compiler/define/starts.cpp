@@ -15,6 +15,7 @@
 #include "runtime/base/hash_number.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/places.h"
 
 namespace probe::sema {
 namespace {
@@ -103,6 +104,7 @@ struct Enumerator {
     for (const Orient& orient : layout.orients) {
       for (const std::size_t object : meant(orient.what)) turns[object] = orient.turns;
     }
+    if (objects.empty()) return std::nullopt;  // a fixture alone: one start
     std::size_t longest = 0;
     for (std::size_t i = 0; i < turns.size(); ++i) {
       if (turns[i].size() > turns[longest].size()) longest = i;
@@ -409,21 +411,6 @@ std::vector<Start> clear_starts(Relations& relations, const Model& model, const 
 
 namespace {
 
-// Whether roles that two tasks share start at the same places.
-bool same_places(const Task& a, const Task& b) {
-  return std::equal(
-      a.starts.begin(), a.starts.end(), b.starts.begin(), b.starts.end(),
-      [](const Start& p, const Start& q) {
-        const std::size_t shared = std::min(p.placed.size(), q.placed.size());
-        return std::equal(
-            p.placed.begin(),
-            p.placed.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(shared, 2)),
-            q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
-              return x.x == y.x && x.y == y.y;
-            });
-      });
-}
-
 // A phrase by which starts are chosen is clear in others where the camera or the scene is another:
 // then the places moved, whatever the text calls them.
 void compare_choices(Model& model) {
@@ -431,11 +418,29 @@ void compare_choices(Model& model) {
     if (task.baseline == TaskId::kNone || task.starts.empty()) continue;
     const Task& baseline = model.tasks[task.baseline];
     if ((task.clear.empty() && baseline.clear.empty()) || baseline.starts.empty()) continue;
-    if (!same_places(task, baseline)) task.axes |= plan::bit(plan::Axis::kLayout);
+    if (!start_at_same_places(task, baseline)) task.axes |= plan::bit(plan::Axis::kLayout);
   }
 }
 
 }  // namespace
+
+std::size_t roles_filled(const Task& task) {
+  return task.objects().size() - task.distractors.size() - task.placed.size();
+}
+
+bool start_at_same_places(const Task& a, const Task& b) {
+  const std::size_t shared = std::min(roles_filled(a), roles_filled(b));
+  return std::ranges::equal(a.starts, b.starts, [&](const Start& p, const Start& q) {
+    return std::equal(p.placed.begin(), p.placed.begin() + static_cast<std::ptrdiff_t>(shared),
+                      q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
+                        return plan::place_at(x.x, x.y) == plan::place_at(y.x, y.y);
+                      });
+  });
+}
+
+bool starts_correspond(const Task& a, const Task& b) {
+  return a.scene == b.scene && roles_filled(a) == roles_filled(b) && start_at_same_places(a, b);
+}
 
 void define_starts(Context& context) {
   Model& model = context.model;

@@ -32,4 +32,15 @@ class Relations;
 std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,
                                 std::vector<Start> starts);
 
+// How many objects have a role: they come first in a start.
+std::size_t roles_filled(const Task& task);
+
+// Whether two tasks have as many starts, and in each what fills the roles that both have lies at the
+// same places.
+bool start_at_same_places(const Task& a, const Task& b);
+// Whether the starts of two tasks correspond one by one: what is compared is then compared start by
+// start, else only in the mean. The same in one scene, where the same number of objects have roles:
+// as the report pairs them, by plan::place_key.
+bool starts_correspond(const Task& a, const Task& b);
+
 }  // namespace probe::sema

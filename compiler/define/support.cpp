@@ -118,9 +118,9 @@ std::vector<Put> puts_of(const Model& model, const Task& task) {
   return puts;
 }
 
-const std::optional<Travel>& Supports::travel(FixtureId id) {
-  const auto [known, is_new] = travels_.try_emplace(id);
-  if (is_new) known->second = Travel::of(model_.fixtures[id], asset_root_);
+const std::optional<Travel>& Supports::travel(const Scene& scene, FixtureId id) {
+  const auto [known, is_new] = travels_.try_emplace({id, scene.fixtures_lift});
+  if (is_new) known->second = Travel::of(scene, model_.fixtures[id], asset_root_);
   return known->second;
 }
 
@@ -143,12 +143,13 @@ std::optional<Supports::Area> Supports::on_object(const Task& task, Start::Place
 
 std::optional<Supports::Area> Supports::in_region(const Task& task, const OfFixture& of) {
   const Fixture& fixture = model_.fixtures[of.fixture];
-  const auto& way = travel(of.fixture);
+  const Scene& scene = model_.scenes[task.scene];
+  const auto& way = travel(scene, of.fixture);
   const auto tree = tree_of(fixture);
   if (!tree || !way) return std::nullopt;
   const std::vector<double> all = joint_starts_of(model_, task);
-  const auto joints = joints_of(model_, model_.scenes[task.scene], of.fixture, all);
-  const Pose pose = part_pose(fixture, *tree, joints, of.part);
+  const auto joints = joints_of(model_, scene, of.fixture, all);
+  const Pose pose = part_pose(place_of(scene, fixture), fixture, *tree, joints, of.part);
   const Region& region = fixture.regions[*of.region].region;
   const plan::TurnedBox box = plan::box_of(region.low, region.high, region.turned);
   const Vec3 half = to_vec(box.half);

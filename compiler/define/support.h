@@ -42,11 +42,11 @@ class Supports {
   std::optional<Area> on_object(const Task& task, Start::Placed& base) const;
   std::optional<Area> in_region(const Task& task, const OfFixture& of);
   double height_in(const Area& area, const Object& object, const Start::Placed& member) const;
-  const std::optional<Travel>& travel(FixtureId id);
+  const std::optional<Travel>& travel(const Scene& scene, FixtureId id);
 
   const Model& model_;
   std::string asset_root_;
-  std::map<FixtureId, std::optional<Travel>> travels_;
+  std::map<std::pair<FixtureId, double>, std::optional<Travel>> travels_;  // by lift
 };
 
 }  // namespace probe::sema

@@ -138,6 +138,12 @@ void TaskTable::add_row() {
   defined_.push_back(false);
 }
 
+void TaskTable::drop_last_row() {
+  context_.model.tasks.drop_last();
+  poison_.pop_back();
+  defined_.pop_back();
+}
+
 void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent) {
   const DeclaredTask& declared = context_.symbols.task_decls[index];
   Model& model = context_.model;

@@ -22,6 +22,7 @@ class TaskTable {
   explicit TaskTable(Context& context);
 
   void add_row();
+  void drop_last_row();
   // Reads declared task `index`; its parent must have been read.
   void define(std::uint32_t index, std::optional<std::uint32_t> parent);
   // Finds the baseline and what differs from it. An unknown name is reported at the last chance.

@@ -26,7 +26,14 @@ TemplateId add_template(Context& context, const syntax::TemplateText& text, std:
     }
     const auto& slot = std::get<syntax::Slot>(part);
     const auto role = find_role(context, slot.name.text);
-    if (!role && !find_thing(context, slot.name)) record.broken = true;
+    const auto fixture = context.symbols.fixtures.peek(slot.name.text);
+    const bool is_fixture = !role && fixture && !peek_thing(context, slot.name.text);
+    if (!role && !is_fixture && !find_thing(context, slot.name)) record.broken = true;
+    if (is_fixture && slot.category) {
+      context.report(Code::P0407, slot.category->span,
+                     "`" + std::string(slot.name.text) + "` is a fixture, which has no category");
+      record.broken = true;
+    }
     SlotRef ref{.avoid = slot.avoid,
                 .the = slot.the,
                 .count = slot.count,
@@ -60,6 +67,15 @@ Referring referring(const Model& model, const Task& task, ObjectId id) {
 Referring referring(const Model& model, const Task& task, RoleId role) {
   const std::vector<ObjectId> objects = task.objects_in(role);
   return objects.empty() ? Referring() : referring(model, task, objects.front());
+}
+
+std::optional<FixtureId> fixture_of(const Model& model, const SlotRef& slot) {
+  if (slot.role != RoleId::kNone) return std::nullopt;
+  const auto is_it = [&](const auto& known) { return known.name == slot.name.text; };
+  if (std::ranges::any_of(model.objects, is_it)) return std::nullopt;
+  const auto found = std::ranges::find_if(model.fixtures, is_it);
+  if (found == model.fixtures.end()) return std::nullopt;
+  return model.fixtures.id(static_cast<std::size_t>(found - model.fixtures.begin()));
 }
 
 std::vector<ObjectId> meant_by(const Model& model, const Task& task, const Template& say,
@@ -199,7 +215,13 @@ std::string render_prompt(const Model& model, const Task& task) {
     if (!part.slot) continue;
     const SlotRef& slot = *part.slot;
     const std::vector<ObjectId> meant = meant_by(model, task, say, slot);
-    if (meant.empty()) continue;
+    if (meant.empty()) {
+      if (!fixture_of(model, slot)) continue;
+      std::string name = slot.name.text;
+      std::ranges::replace(name, '_', ' ');
+      prompt += (slot.the ? "the " : "") + name;
+      continue;
+    }
     if (slot.count == syntax::SlotCount::kOther) {
       prompt += words_for_other(model, task, slot);
     } else if (meant.size() > 1) {

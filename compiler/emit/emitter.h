@@ -60,7 +60,6 @@ class Emitter {
         robots_(model.robots.size()),
         cameras_(model.cameras.size()),
         lights_(model.lights.size()),
-        fixtures_(model.fixtures.size()),
         scenes_(model.scenes.size()),
         tasks_(model.tasks.size()) {}
 
@@ -89,7 +88,8 @@ class Emitter {
   void add_law(const sema::Robot& robot, plan::RobotRecord* record);
   std::vector<std::uint32_t> urdf_meshes(const robot::RobotModel& model, const sema::Spelled& urdf,
                                          AssetOwner owner);
-  void add_fixture(sema::FixtureId id);
+  // Its record: one for each height at which scenes have it.
+  std::uint32_t fixture_index(const sema::Scene& scene, sema::FixtureId id);
   // `owner`: what the names begin with.
   void add_regions(const std::vector<sema::Region>& regions, const std::string& owner,
                    plan::BodyKind kind, std::uint32_t index);
@@ -113,7 +113,7 @@ class Emitter {
 
   // Each with the tasks that cannot run without it.
   void report_misses(const std::vector<TaskId>& chosen);
-  plan::Slice add_bodies(const std::vector<lower::Body>& bodies);
+  plan::Slice add_bodies(const sema::Scene& scene, const std::vector<lower::Body>& bodies);
 
   // Equal starts share their placements: a variant that only changes words adds none.
   plan::Slice add_placements(const sema::Start& start, double z);
@@ -122,7 +122,6 @@ class Emitter {
 
   // Tasks of one shape share them.
   plan::Slice add_roles(const sema::Task& task, const std::vector<lower::Body>& bodies);
-  std::uint32_t region_index(const sema::Object& region);
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
   void add_task(const sema::Task& task);
@@ -164,7 +163,7 @@ class Emitter {
   Used<sema::RobotId> robots_;
   Used<sema::CameraId> cameras_;
   Used<sema::LightId> lights_;
-  Used<sema::FixtureId> fixtures_;
+  std::map<std::pair<sema::FixtureId, double>, std::uint32_t> fixtures_;  // by lift
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::vector<lower::Program> programs_;

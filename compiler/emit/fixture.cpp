@@ -17,14 +17,17 @@ void Emitter::add_regions(const std::vector<sema::Region>& regions, const std::s
   }
 }
 
-void Emitter::add_fixture(sema::FixtureId id) {
-  if (!fixtures_.add(id, size32(records().fixtures))) return;
+std::uint32_t Emitter::fixture_index(const sema::Scene& scene, sema::FixtureId id) {
+  const auto [known, is_new] =
+      fixtures_.try_emplace({id, scene.fixtures_lift}, size32(records().fixtures));
+  if (!is_new) return known->second;
   const sema::Fixture& fixture = model_.fixtures[id];
   const AssetOwner owner{AssetOwner::Kind::kFixture, static_cast<std::uint32_t>(id)};
   plan::FixtureRecord record;
   record.name = writer_.text(fixture.name);
   record.urdf = assets_.add(fixture.urdf.text, plan::AssetKind::kUrdf, fixture.urdf.span, owner);
   record.position = fixture.position;
+  record.position[2] += scene.fixtures_lift;
   record.rotation = fixture.turn.rotation;
   record.friction = fixture.friction;
   std::vector<plan::FixtureJointRecord> joints;
@@ -65,6 +68,7 @@ void Emitter::add_fixture(sema::FixtureId id) {
   }
   record.meshes = writer_.list(urdf_meshes(*fixture.model, fixture.urdf, owner));
   records().fixtures.push_back(record);
+  return known->second;
 }
 
 }  // namespace probe::emit

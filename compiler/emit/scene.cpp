@@ -91,8 +91,7 @@ void Emitter::add_scene(sema::SceneId id) {
   record.air_viscosity = scene.air_viscosity;
   std::vector<std::uint32_t> fixtures;
   for (const sema::FixtureId fixture : scene.fixtures) {
-    add_fixture(fixture);
-    fixtures.push_back(fixtures_[fixture]);
+    fixtures.push_back(fixture_index(scene, fixture));
   }
   if (!fixtures.empty()) record.fixtures = writer_.list(fixtures);
   const std::uint32_t index = size32(records().scenes);

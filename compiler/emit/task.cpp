@@ -12,13 +12,14 @@
 
 namespace probe::emit {
 
-plan::Slice Emitter::add_bodies(const std::vector<lower::Body>& bodies) {
+plan::Slice Emitter::add_bodies(const sema::Scene& scene,
+                                const std::vector<lower::Body>& bodies) {
   std::vector<plan::BodyRecord> rows;
   for (const lower::Body& body : bodies) {
     const bool is_object = body.kind == plan::BodyKind::kObject;
     std::uint32_t index = is_object ? objects_[static_cast<ObjectId>(body.index)] : body.index;
     if (body.kind == plan::BodyKind::kPart) {
-      const std::uint32_t fixture = fixtures_[static_cast<sema::FixtureId>(body.index)];
+      const std::uint32_t fixture = fixture_index(scene, static_cast<sema::FixtureId>(body.index));
       index = records().fixtures[fixture].parts.first + body.part;
     }
     rows.push_back({static_cast<std::uint32_t>(body.kind), index, writer_.text(body.name)});
@@ -69,16 +70,6 @@ std::uint32_t body_in_role(const std::vector<lower::Body>& bodies, sema::RoleId 
 }  // namespace
 
 // Those of a fixture stand together, in their order.
-std::uint32_t Emitter::region_index(const sema::Object& region) {
-  const plan::StringRef name = writer_.text(region.name);
-  const auto& rows = records().regions;
-  const auto at = std::ranges::find_if(rows, [&](const plan::RegionRecord& row) {
-    return row.kind == static_cast<std::uint32_t>(plan::BodyKind::kPart) &&
-           row.name.offset == name.offset && row.name.length == name.length;
-  });
-  return static_cast<std::uint32_t>(at - rows.begin());
-}
-
 plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::Body>& bodies) {
   std::vector<plan::RoleRecord> rows;
   std::vector<std::uint32_t> key;
@@ -104,8 +95,15 @@ plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::
     const sema::RoleId id = model_.roles.id(i);
     for (const auto& [role, thing] : task.things()) {
       if (role != id) continue;
-      const bool is_part = model_.objects[thing].of->is_part();
-      next = is_part ? body_in_role(bodies, role) : region_index(model_.objects[thing]);
+      const sema::OfFixture& of = *model_.objects[thing].of;
+      const bool is_part = of.is_part();
+      const auto owner = [&] {
+        const std::uint32_t fixture = fixture_index(model_.scenes[task.scene], of.fixture);
+        return records().fixtures[fixture].parts.first + of.part;
+      };
+      next = is_part
+                 ? body_in_role(bodies, role)
+                 : region_named(model_.objects[thing].name, plan::BodyKind::kPart, owner());
       add(writer_.text(model_.roles[id].name),
           is_part ? plan::RoleKind::kPart : plan::RoleKind::kRegion, 1);
     }
@@ -190,7 +188,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.program = *program;
   record.source = objects_[task.source];
   record.target = objects_[task.target];
-  record.bodies = add_bodies(bodies);
+  record.bodies = add_bodies(model_.scenes[task.scene], bodies);
   record.roles = add_roles(task, bodies);
   record.distractors = size32(task.distractors);
   record.horizon = static_cast<std::uint32_t>(task.horizon);

@@ -1,5 +1,6 @@
 #include "compiler/geometry/part_place.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,17 @@ std::span<const double> joints_of(const Model& model, const Scene& scene, Fixtur
   return {};
 }
 
-Pose part_pose(const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
+Pose place_of(const Scene& scene, const Fixture& fixture) {
+  std::array<double, 3> position = fixture.position;
+  position[2] += scene.fixtures_lift;
+  return pose_of(position, fixture.turn.rotation);
+}
+
+Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
                std::uint32_t part) {
   std::vector<Pose> poses(tree.link_count());
   tree.link_poses(joints, poses);
-  return pose_of(fixture.position, fixture.turn.rotation) *
-         poses[static_cast<std::size_t>(fixture.parts[part].index)];
+  return place * poses[static_cast<std::size_t>(fixture.parts[part].index)];
 }
 
 }  // namespace probe::sema

@@ -18,8 +18,11 @@ std::optional<robot::Tree> tree_of(const Fixture& fixture);
 std::span<const double> joints_of(const Model& model, const Scene& scene, FixtureId fixture,
                                   std::span<const double> all);
 
-// The frame of a part's link in the world, the fixture's joints (m, rad) there.
-Pose part_pose(const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
+// Where a fixture's root link stands in a scene.
+Pose place_of(const Scene& scene, const Fixture& fixture);
+
+// The frame of a part's link in the world, of a fixture at `place`, its joints (m, rad) there.
+Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
                std::uint32_t part);
 
 }  // namespace probe::sema

@@ -55,16 +55,15 @@ scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
                {origin, Quat(turn)});
 }
 
-Travel::Travel(const Fixture& fixture, robot::Tree tree)
-    : fixture_(&fixture), tree_(std::move(tree)) {
-  base_ = pose_of(fixture.position, fixture.turn.rotation);
-}
+Travel::Travel(const Pose& place, const Fixture& fixture, robot::Tree tree)
+    : fixture_(&fixture), tree_(std::move(tree)), base_(place) {}
 
-std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asset_root) {
+std::optional<Travel> Travel::of(const Scene& scene, const Fixture& fixture,
+                                 const std::string& asset_root) {
   if (fixture.broken || !fixture.model) return std::nullopt;
   auto tree = tree_of(fixture);
   if (!tree) return std::nullopt;
-  Travel travel(fixture, std::move(*tree));
+  Travel travel(place_of(scene, fixture), fixture, std::move(*tree));
   const std::string folder =
       (std::filesystem::path(asset_root) / fixture.urdf.text).parent_path().string();
   for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
@@ -81,7 +80,7 @@ std::optional<Travel> Travel::of(const Fixture& fixture, const std::string& asse
 
 void Travel::put(std::span<const double> joints, std::uint32_t part,
                  std::vector<PartBox>* to) const {
-  const Pose pose = part_pose(*fixture_, tree_, joints, part);
+  const Pose pose = part_pose(base_, *fixture_, tree_, joints, part);
   for (const Shape& shape : shapes_) {
     if (shape.part != part) continue;
     PartBox box{part, 0, moved(shape.solid, pose), {}};

@@ -28,9 +28,10 @@ struct PartBox {
 
 class Travel {
  public:
-  // Reads the collision meshes that the URDF names; one that cannot be read, which is reported
+  // Of a fixture that stands in the scene. Reads the collision meshes that the URDF names; one that cannot be read, which is reported
   // where assets are collected, fills nothing. Nothing when the fixture has no description.
-  static std::optional<Travel> of(const Fixture& fixture, const std::string& asset_root);
+  static std::optional<Travel> of(const Scene& scene, const Fixture& fixture,
+                                  const std::string& asset_root);
 
   // With each joint at these positions.
   std::vector<PartBox> at(std::span<const double> joints) const;
@@ -49,7 +50,7 @@ class Travel {
     std::uint32_t part;
     scene::Solid solid;  // in the link's frame
   };
-  Travel(const Fixture& fixture, robot::Tree tree);
+  Travel(const Pose& place, const Fixture& fixture, robot::Tree tree);
   void put(std::span<const double> joints, std::uint32_t part, std::vector<PartBox>* to) const;
   void add(const std::vector<double>& joints, std::uint32_t part);
   void sweep(std::uint32_t part);

@@ -128,6 +128,7 @@ Room room_of(const sema::Model& model, const sema::Task& task) {
   for (const sema::FixtureId id : scene.fixtures) {
     const sema::Fixture& fixture = model.fixtures[id];
     reach(fixture.position);
+    reach(std::array{fixture.position[2] + scene.fixtures_lift});
     for (const sema::Fixture::Joint& joint : fixture.joints) {
       constexpr double kNone = std::numeric_limits<double>::infinity();
       room.joints.emplace_back(joint.is_endless ? -kNone : joint.lower,

@@ -38,6 +38,7 @@ class Table {
     rows_.push_back(std::move(row));
     return static_cast<Id>(rows_.size() - 1);
   }
+  void drop_last() { rows_.pop_back(); }
   std::size_t size() const { return rows_.size(); }
   Id id(std::size_t index) const { return static_cast<Id>(index); }
   auto begin() { return rows_.begin(); }

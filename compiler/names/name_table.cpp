@@ -56,6 +56,11 @@ std::optional<std::uint32_t> NameTable::peek(std::string_view text) const {
   return at->second;
 }
 
+void NameTable::forget_last() {
+  by_text_.erase(names_.back().text);
+  names_.pop_back();
+}
+
 std::optional<std::uint32_t> NameTable::find(const syntax::Name& name,
                                              Diagnostics& diagnostics) const {
   if (const auto found = peek(name.text)) return found;

@@ -20,6 +20,8 @@ class NameTable {
 
   // The index of the new name; nothing (and P0203) when it is taken.
   std::optional<std::uint32_t> declare(const syntax::Name& name, Diagnostics& diagnostics);
+  // The name that was declared last is none.
+  void forget_last();
   // Nothing, and P0201 with the nearest spelling, when there is none.
   std::optional<std::uint32_t> find(const syntax::Name& name, Diagnostics& diagnostics) const;
   std::optional<std::uint32_t> peek(std::string_view text) const;

@@ -129,9 +129,8 @@ class FixtureCheck : FieldCheck {
   using FieldCheck::FieldCheck;
 
   Status run() const {
-    PROBE_TRY(check_unique_names(t.fixtures, "fixtures"));
     PROBE_TRY(owners());
-    PROBE_TRY(part_names());
+    for (const FixtureRecord& fixture : t.fixtures) PROBE_TRY(part_names(fixture));
     for (const SceneRecord& scene : t.scenes) PROBE_TRY(fixtures_of(scene));
     for (const TaskRecord& task : t.tasks) {
       for (const EpisodeRecord& episode : slice_of(t.episodes, task.episodes))
@@ -163,9 +162,9 @@ class FixtureCheck : FieldCheck {
     return {};
   }
 
-  Status part_names() const {
+  Status part_names(const FixtureRecord& fixture) const {
     std::unordered_set<std::string_view> seen;
-    for (const PartRecord& part : t.parts) {
+    for (const PartRecord& part : slice_of(t.parts, fixture.parts)) {
       if (!seen.insert(t.text(part.name)).second) {
         return fail(Rule::kPartName, &part.name,
                     fmt::format("two parts are called `{}`", t.text(part.name)));
@@ -174,10 +173,11 @@ class FixtureCheck : FieldCheck {
     return {};
   }
 
+  // By name: one that stands on surfaces of two heights has a record for each.
   Status fixtures_of(const SceneRecord& scene) const {
-    std::unordered_set<std::uint32_t> seen;
+    std::unordered_set<std::string_view> seen;
     for (const std::uint32_t& fixture : slice_of(t.list, scene.fixtures)) {
-      if (seen.insert(fixture).second) continue;
+      if (seen.insert(t.text(t.fixtures[fixture].name)).second) continue;
       return fail(Rule::kFixtureTwice, &fixture,
                   fmt::format("fixture `{}` stands twice in scene `{}`",
                               t.text(t.fixtures[fixture].name), t.text(scene.name)));

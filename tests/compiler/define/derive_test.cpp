@@ -188,3 +188,19 @@ TEST_CASE("variants of one sweep that are the same are named") {
             "derive \"{t}_{d}\" for t in { red_on_tray }, d in 200ms, 400ms { delay d }")
             ->codes() == "");
 }
+
+TEST_CASE("a number that a task has already is no choice, as its own objects and light are none") {
+  const auto a = analyze_with_suite(R"(
+derive "{t}_d{k}" for t in { red_on_tray }, k in 0 .. 2 { distractors k of (blue, pale) seed 1 }
+derive "{t}_h{k}" for t in { red_on_tray }, k in 40, 60, 80 { horizon k steps }
+derive "{t}_i{k}" for t in { red_on_tray }, k in 0 .. 1 { idle k steps }
+set crowds = variants of { red_on_tray } where axis distractors
+set others = variants of { red_on_tray } - crowds
+)");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  CHECK(members(*a, "crowds") == "red_on_tray_d1 red_on_tray_d2");
+  CHECK(members(*a, "others") == "red_on_tray_h40 red_on_tray_h80 red_on_tray_i1");
+  CHECK(analyze_with_suite(
+            "derive \"{t}_h{k}\" for t in { red_on_tray }, k in 60, 60 { horizon k steps }")
+            ->codes() == "P0211");
+}

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "compiler/define/solution.h"
 #include "tests/compiler/small_suite.h"
 
 using namespace probe;
@@ -299,4 +300,40 @@ TEST_CASE("a region of a fixture whose root link nothing can touch says so") {
   CHECK(odd(described, "region r of f" + box) ==
         "P1301 `f` the root link of `f` has no collision, it is no body");
   CHECK(odd(described, "part lid link lid; region r of lid" + box).empty());
+}
+
+TEST_CASE("what stands on a surface goes with its height, fixtures with joints, too") {
+  const auto a = analyze_with_suite(
+      std::string(test::kChest) +
+      "scene low like room { surface 70cm area (-50cm, -50cm) .. (50cm, 50cm) }\n"
+      "scene lower like low { surface 65cm area (-50cm, -50cm) .. (50cm, 50cm) }\n"
+      "scene written like room { surface 70cm area (-50cm, -50cm) .. (50cm, 50cm); fixture chest }\n"
+      "task t like red_on_tray { scene room }\n"
+      "variants of t { t_low { scene low }; t_lower { scene lower }; t_written { scene written } }\n");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  const auto lift = [&](const char* name) {
+    return a->model.scenes[a->task(name).scene].fixtures_lift;
+  };
+  CHECK(lift("t") == 0);
+  CHECK(lift("t_low") == doctest::Approx(-0.1));
+  CHECK(lift("t_lower") == doctest::Approx(-0.15));
+  CHECK(lift("t_written") == 0);
+  CHECK(a->task("t_low").axes == plan::bit(plan::Axis::kSceneGeometry));
+  CHECK(a->task("t_lower").axes == plan::bit(plan::Axis::kSceneGeometry));
+  const auto same = with_chest("scene other like room { fixture chest }\n"
+                               "task t like red_on_tray { scene room }\nvariant v of t { scene other }");
+  CHECK(same->codes() == "P0702");
+}
+
+TEST_CASE("in a solution a joint stands for the part that it moves, as in measures") {
+  const auto a = with_chest(
+      "metrics pulled { success = at end travel(chest.slide) > 10cm }\n"
+      "task t like red_on_tray { scene room; metrics pulled; solution { open chest.slide; close chest.drawer } }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  const sema::Task& task = a->task("t");
+  REQUIRE(task.solution.size() == 2);
+  const sema::SkillThing by_joint = sema::find_thing(a->model, task, task.solution[0].what),
+                         by_part = sema::find_thing(a->model, task, task.solution[1].what);
+  CHECK(by_joint.kind == sema::SkillThing::Kind::kPart);
+  CHECK(by_joint.part == by_part.part);
 }

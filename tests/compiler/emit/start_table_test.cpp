@@ -193,6 +193,29 @@ TEST_CASE("joints of fixtures and of the robot begin where a table says, start b
   CHECK(begun(plan, "u", 1).joints[1] == 0.01);
 }
 
+TEST_CASE("a fixture on a lower surface has a record of its own, and regions and parts of that") {
+  const plan::Plan plan = plan_with(
+      "start,object,x_m,y_m\n0,source,-0.15,-0.11\n",
+      "use \"suite/kitchen.probe\"\n"
+      "scene low like counter { surface 85cm area (-42cm, -26cm) .. (26cm, 30cm) }\n"
+      "metrics away { success = at end stowed(source, target) }\n"
+      "task u like carrot_in_the_drawer { metrics away }\n"
+      "variant t of u { scene low }\n");
+  const auto cabinet_of = [&](const char* name) -> const plan::FixtureRecord& {
+    const plan::TaskRecord& task = plan.tasks()[plan.find_task(name).value()];
+    const auto& scene = plan.scenes()[task.scene];
+    const std::uint32_t index = plan::slice_of(plan.tables().list, scene.fixtures)[0];
+    return plan.fixtures()[index];
+  };
+  CHECK(plan.text(cabinet_of("t").name) == "cabinet");
+  CHECK(plan.text(cabinet_of("u").name) == "cabinet");
+  CHECK(cabinet_of("u").position[2] == 0.9);
+  CHECK(cabinet_of("t").position[2] == doctest::Approx(0.85));
+  CHECK(cabinet_of("t").parts.first != cabinet_of("u").parts.first);
+  CHECK(plan.tasks()[plan.find_task("t").value()].axes ==
+        plan::bit(plan::Axis::kSceneGeometry));
+}
+
 TEST_CASE("a task whose table says other joints moves that axis alone") {
   const std::string place = "start,object,x_m,y_m,value\n0,carrot,-0.15,-0.11,\n";
   // The baseline's table has the same place, and the joints of `given`.
@@ -214,6 +237,10 @@ TEST_CASE("a task whose table says other joints moves that axis alone") {
   CHECK(axes(drawer + arm, arm) == plan::bit(Axis::kFixture));
   CHECK(axes(arm, "0,panda.joint1,,,0.25\n") == plan::bit(Axis::kRobot));
   CHECK(axes("0,panda.joint2,,,0.125\n", arm) == plan::bit(Axis::kRobot));
+  // A row that repeats the scene says nothing.
+  const std::string repeated = "0,panda.joint2,,,-0.161037389\n";
+  CHECK(axes(drawer + repeated) == plan::bit(Axis::kFixture));
+  CHECK(axes(drawer + arm + repeated, arm) == plan::bit(Axis::kFixture));
 }
 
 TEST_CASE("a table with fewer things around moves them alone; with another place the layout, too") {
