@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/check.h"
+#include "runtime/robot/action_check.h"
 #include "runtime/robot/grip_command.h"
 #include "runtime/robot/rotation.h"
 
@@ -71,15 +72,7 @@ double EeDeltaPoseController::openness(std::span<const double> q) const {
 Result<std::span<const double>> EeDeltaPoseController::targets(const ToolAction& action,
                                                                std::span<const double> measured_q) {
   PROBE_CHECK(measured_q.size() == joint_targets_.size(), "one measured position a drive");
-  for (std::size_t i = 0; i < action.size(); ++i) {
-    if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurdAction) continue;
-    return Failure{Fault::kPolicy,
-                   fmt::format("action[{}] is {}, wanted {}", i, action[i],
-                               i < kActionTurn      ? "a shift in metres"
-                               : i < kActionGripper ? "a rotation vector in radians"
-                                                    : "the gripper from -1 to 1"),
-                   ""};
-  }
+  PROBE_TRY(check_tool_action(action));
   const Vec3 shift = Eigen::Map<const Vec3>(action.data() + kActionShift);
   const Vec3 turn = Eigen::Map<const Vec3>(action.data() + kActionTurn);
   target_ = moved_target(target_, tcp_pose(measured_q).position, shift, turn);

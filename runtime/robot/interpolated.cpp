@@ -10,6 +10,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
+#include "runtime/robot/action_check.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::robot {
@@ -138,15 +139,7 @@ Status InterpolatedController::begin(const ToolAction& action, std::span<const d
                                      std::span<const double> speeds, int substeps) {
   PROBE_CHECK(q.size() == targets_.size() && speeds.size() == q.size() && substeps > 0,
               "a measured position and speed a drive");
-  for (size_t i = 0; i < action.size(); ++i) {
-    if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurdAction) continue;
-    return Failure{Fault::kPolicy,
-                   fmt::format("action[{}] is {}, wanted {}", i, action[i],
-                               i < kActionTurn      ? "a shift in metres"
-                               : i < kActionGripper ? "a rotation vector in radians"
-                                                    : "the gripper from -1 to 1"),
-                   ""};
-  }
+  PROBE_TRY(check_tool_action(action));
   const Vec3 shift = Eigen::Map<const Vec3>(action.data() + kActionShift);
   const Quat turn = from_rotation_vector(Eigen::Map<const Vec3>(action.data() + kActionTurn));
   const size_t arm = tool_.joint_count();

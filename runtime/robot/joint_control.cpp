@@ -7,11 +7,24 @@
 #include <fmt/format.h>
 
 #include "runtime/base/check.h"
+#include "runtime/robot/action_check.h"
 #include "runtime/robot/grip_command.h"
 
 namespace probe::robot {
 
 using std::size_t;
+
+namespace {
+
+std::string_view wanted_position(size_t number, size_t size) {
+  return number + 1 == size ? "the gripper from -1 to 1" : "a joint's position";
+}
+
+std::string_view wanted_step(size_t number, size_t size) {
+  return number + 1 == size ? "the gripper from -1 to 1" : "a joint's step";
+}
+
+}  // namespace
 
 Result<JointController> JointController::read(const RobotModel& model, const EeControlSpec& spec) {
   PROBE_ASSIGN(const Chain chain, Chain::create(model, spec.tcp_link, spec.arm_joints));
@@ -56,15 +69,7 @@ Result<std::span<const double>> JointController::targets(std::span<const double>
   const size_t arm = lower_.size();
   PROBE_CHECK(action.size() == arm + 1 && measured_q.size() == targets_.size(),
               "a number for each arm joint and one for the gripper, one position a drive");
-  for (size_t i = 0; i < action.size(); ++i) {
-    if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurdAction) continue;
-    return Failure{Fault::kPolicy,
-                   fmt::format("action[{}] is {}, wanted {}", i, action[i],
-                               i == arm    ? "the gripper from -1 to 1"
-                               : absolute_ ? "a joint's position"
-                                           : "a joint's step"),
-                   ""};
-  }
+  PROBE_TRY(check_numbers(action, absolute_ ? wanted_position : wanted_step));
   const double most = law_.most > 0 ? law_.most : std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < arm; ++i) {
     const double from = absolute_ ? 0 : law_.from_target ? targets_[i] : measured_q[i];

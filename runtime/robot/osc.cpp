@@ -9,10 +9,17 @@
 #include <Eigen/Eigenvalues>
 
 #include "runtime/base/check.h"
+#include "runtime/robot/action_check.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::robot {
 namespace {
+
+std::string_view wanted_share(std::size_t number, std::size_t /*size*/) {
+  if (number < kActionTurn) return "a share of the largest shift, -1 to 1";
+  return number < kActionGripper ? "a share of the largest turn, -1 to 1"
+                                 : "the gripper, -1 opens, 1 closes";
+}
 
 using Eigen::Index;
 using std::size_t;
@@ -184,15 +191,7 @@ void OscPoseController::reset() {
 
 Status OscPoseController::begin(std::span<const double> action, int substeps) {
   PROBE_CHECK(action.size() == kActionSize, "six shares and a gripper");
-  for (size_t i = 0; i < kActionSize; ++i) {
-    if (std::isfinite(action[i]) && std::abs(action[i]) <= kAbsurdAction) continue;
-    return Failure{Fault::kPolicy,
-                   fmt::format("action[{}] is {}, wanted {}", i, action[i],
-                               i < kActionTurn      ? "a share of the largest shift, -1 to 1"
-                               : i < kActionGripper ? "a share of the largest turn, -1 to 1"
-                                                    : "the gripper, -1 opens, 1 closes"),
-                   ""};
-  }
+  PROBE_TRY(check_numbers(action, wanted_share));
   for (size_t i = 0; i < 6; ++i) delta_[i] = std::clamp(action[i], -1.0, 1.0) * law_.output[i];
   const double grip = action[kActionGripper];
   grip_ = grip > 0 ? 1 : grip < 0 ? -1 : 0;

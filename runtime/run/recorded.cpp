@@ -5,8 +5,11 @@
 #include <set>
 
 #include "runtime/robot/laws.h"
+#include "runtime/stage/assets.h"
+#include "runtime/stage/robot_of.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
 
@@ -86,33 +89,88 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
   return std::shared_ptr<const servers::RecordedEpisodes>(std::move(steps));
 }
 
-Result<StoredActions> only_actions(const std::string& dir) {
+namespace {
+
+// Of a law and an arm of so many joints.
+servers::ServedActions actions_of(const robot::KindRow& law, std::size_t arm_joints) {
+  servers::ServedActions actions;
+  if (law.per_joint) {
+    actions.form = law.layout == robot::ActionLayout::kJoints ? servers::ActionForm::kJoints
+                                                              : servers::ActionForm::kJointSteps;
+    actions.arm_joints = static_cast<int>(arm_joints);
+  }
+  if (law.kind == robot::ControlKind::kEeDeltaInterpolated)
+    actions.gripper = servers::GripperRange::kStep;
+  return actions;
+}
+
+const plan::RobotRecord& robot_in(const plan::Plan& plan, std::uint32_t task) {
+  return plan.robots()[plan.scenes()[plan.tasks()[task].scene].robot];
+}
+
+// Records count from 1.
+const robot::KindRow& law_of(const plan::RobotRecord& robot) {
+  return robot::control_kinds()[robot.control - 1];
+}
+
+// The one of all.
+class Only {
+ public:
+  Status add(const servers::ServedActions& here, const std::string& where, const char* mend) {
+    if (known_ && *known_ != here) {
+      return Failure{
+          Fault::kUsage,
+          std::string("has actions of several laws or arms, and a server answers in those of one: ") +
+              mend,
+          where};
+    }
+    known_ = here;
+    return {};
+  }
+  servers::ServedActions get() const { return known_.value_or(servers::ServedActions{}); }
+
+ private:
+  std::optional<servers::ServedActions> known_;
+};
+
+}  // namespace
+
+Result<servers::ServedActions> only_actions(const plan::Plan& plan,
+                                            std::span<const std::uint32_t> tasks,
+                                            const std::string& assets) {
+  Only only;
+  std::set<const plan::RobotRecord*> seen;
+  for (const std::uint32_t task : tasks) {
+    const plan::RobotRecord& record = robot_in(plan, task);
+    if (!seen.insert(&record).second) continue;
+    const std::uint32_t one[] = {task};
+    PROBE_ASSIGN(const auto loaded, stage::SharedAssets::load(plan, assets, one));
+    PROBE_ASSIGN(const robot::Robot robot,
+                 stage::robot_of(plan, record, *loaded->robot(record.urdf)));
+    PROBE_TRY(only.add(actions_of(law_of(record), robot.control.arm_joints.size()),
+                       "task `" + std::string(plan.text(plan.tasks()[task].name)) + "`",
+                       "choose tasks of one robot with --tasks"));
+  }
+  return only.get();
+}
+
+Result<servers::ServedActions> only_actions(const std::string& dir) {
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  std::optional<std::pair<std::string, std::uint32_t>> known;  // law, numbers of an action
+  PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
+  Only only;
   std::set<std::string> tasks;
   for (const store::ResultRow& row : rows) {
     // A task has one robot.
     if (row.invalid || !tasks.insert(row.task).second) continue;
+    const auto task = plan.find_task(row.task);
+    if (!task) continue;  // who reads the rows proves them
     PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(row));
     const auto& joints = trace.header.joint_actions;
-    const std::pair<std::string, std::uint32_t> here(joints ? joints->law : std::string(),
-                                                     joints ? joints->count : 0);
-    if (known && *known != here) {
-      return Failure{Fault::kUsage,
-                     "has actions of several laws or arms, and a server answers in those of one: "
-                     "run the tasks of "
-                     "one robot into a folder of their own",
-                     dir};
-    }
-    known = here;
+    // Behind those of the joints an action has the gripper's.
+    PROBE_TRY(only.add(actions_of(law_of(robot_in(plan, *task)), joints ? joints->count - 1 : 0),
+                       dir, "run the tasks of one robot into a folder of their own"));
   }
-  if (!known) return StoredActions{};
-  const robot::KindRow* kind = robot::find_kind(known->first);
-  if (kind == nullptr) return StoredActions{};
-  return StoredActions{kind->layout == robot::ActionLayout::kJoints
-                           ? servers::ActionForm::kJoints
-                           : servers::ActionForm::kJointSteps,
-                       static_cast<int>(known->second) - 1};  // behind them the gripper's
+  return only.get();
 }
 
 Result<std::optional<int>> only_seed(const std::string& dir) {

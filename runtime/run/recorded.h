@@ -2,9 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
+#include "runtime/plan/plan.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/served.h"
 
@@ -24,14 +27,12 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
                                                                         int most);
 
-// What the actions of a run's valid episodes are, as a profile says it: changes of the tool, or
-// what the law of its robots takes, for an arm of so many joints (else 0). Fails (kUsage) where
-// there are several.
-struct StoredActions {
-  servers::ActionForm form = servers::ActionForm::kDelta;
-  int arm_joints = 0;
-};
-Result<StoredActions> only_actions(const std::string& dir);
+// What the robots of these tasks (indices) take, and what the actions of a run's valid episodes are.
+// Both fail (kUsage) where there are several.
+Result<servers::ServedActions> only_actions(const plan::Plan& plan,
+                                            std::span<const std::uint32_t> tasks,
+                                            const std::string& assets);
+Result<servers::ServedActions> only_actions(const std::string& dir);
 
 // Which seed the episodes of a run are of, where its policy draws, so that of another seed they
 // would be others; nothing where it draws nothing, or there are several.

@@ -217,13 +217,22 @@ Check judge_gripper(const Profile& profile, const std::vector<RawAction>& action
   const Range range = range_of(actions, last, 1);
   Check check{
       "gripper", Verdict::kFine, "number " + std::to_string(last + 1) + ": " + text_of(range), {}};
-  const bool inverted = profile.action_gripper == GripperRange::kSignedInverted ||
-                        profile.action_gripper == GripperRange::kUnitInverted;
+  const bool inverted = is_inverted(profile.action_gripper);
   const std::string ending = inverted ? "_inverted" : "";
   if (range.low < -2 || range.high > 2) {
     check.verdict = Verdict::kWrong;
     check.found += ", far outside 0 .. 1 and -1 .. 1: another unit, or not yet denormalised";
     check.fix = {"action.normalised = bound    # or gaussian"};
+  } else if (is_step(profile.action_gripper)) {
+    // A hand that is open and has nothing to take is left alone.
+    const bool rests = std::ranges::any_of(
+        actions, [&](const RawAction& action) { return std::abs(action[last]) < 0.5; });
+    if (!rests) {
+      check.verdict = Verdict::kWarning;
+      check.found += ", and no answer leaves the fingers where they are: an opening, not a step?";
+      check.fix = {(range.low < -0.2 ? "action.gripper = signed" : "action.gripper = unit") + ending,
+                   range.low < -0.2 ? "action.threshold = 0" : "action.threshold = 0.5"};
+    }
   } else if (is_unit(profile.action_gripper) && range.low < -0.2) {
     check.verdict = Verdict::kWrong;
     check.found += ", the profile says 0 .. 1";
@@ -260,10 +269,11 @@ Check judge_polarity(const Profile& profile, const std::vector<std::vector<RawAc
     check.found = "in " + std::to_string(closes) + " of " + std::to_string(read) +
                   " answers the first action closes the open gripper over an empty table: is its "
                   "number the other way round?";
-    const bool inverted = profile.action_gripper == GripperRange::kSignedInverted ||
-                          profile.action_gripper == GripperRange::kUnitInverted;
+    const bool inverted = is_inverted(profile.action_gripper);
     check.fix = {std::string("action.gripper = ") +
-                 (is_unit(profile.action_gripper) ? "unit" : "signed") +
+                 (is_step(profile.action_gripper)   ? "step"
+                  : is_unit(profile.action_gripper) ? "unit"
+                                                    : "signed") +
                  (inverted ? "" : "_inverted")};
   }
   return check;

@@ -38,10 +38,12 @@ Ends ends_of(GripperRange range) {
     case GripperRange::kUnit:
       return {0, 1};
     case GripperRange::kSignedInverted:
+    case GripperRange::kStepInverted:
       return {1, -1};
     case GripperRange::kUnitInverted:
       return {1, 0};
     case GripperRange::kSigned:
+    case GripperRange::kStep:
       break;
   }
   return {-1, 1};

@@ -182,6 +182,29 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
                  server};
 }
 
+namespace {
+
+// Where the law adds the gripper's number to what was asked for last, an opening is none: 0.6 of the
+// way, said twice, would be all of it. With a threshold each is all the way, which is the same.
+Status check_gripper(const Profile& profile, const robot::KindRow& law, const std::string& server) {
+  const bool takes_steps = law.kind == robot::ControlKind::kEeDeltaInterpolated;
+  const bool is_said = is_step(profile.action_gripper);
+  if (takes_steps ? is_said || profile.action_threshold.has_value() : !is_said) return {};
+  const std::string_view word =
+      std::ranges::find(kGrippers, profile.action_gripper, &Word<GripperRange>::value)->text;
+  return Failure{
+      Fault::kUsage,
+      "the gripper's number of profile `" + profile.name + "` is `" + std::string(word) +
+          "` (`action.gripper`), " + (is_said ? "how far it is to go" : "an opening") +
+          ", and a robot of the run is controlled by `" + std::string(law.word) + "`, which takes " +
+          (takes_steps ? "how far it is to go (`action.gripper = step`, or a threshold that opens or "
+                         "closes it whole: `action.threshold`)"
+                       : "an opening (`action.gripper = signed`)"),
+      server};
+}
+
+}  // namespace
+
 Status check_form(const Profile& profile, ActionForm form, robot::ControlKind control,
                   const std::string& server) {
   struct Takes {
@@ -203,8 +226,9 @@ Status check_form(const Profile& profile, ActionForm form, robot::ControlKind co
     }
     return {form, ""};
   }();
-  if (form == ActionForm::kUnsaid || form == takes.form) return {};
   const robot::KindRow& row = robot::control_kinds()[static_cast<std::size_t>(control)];
+  PROBE_TRY(check_gripper(profile, row, server));
+  if (form == ActionForm::kUnsaid || form == takes.form) return {};
   const auto word_of = [](ActionForm of) {
     return std::string(std::ranges::find(kActionForms, of, &Word<ActionForm>::value)->text);
   };

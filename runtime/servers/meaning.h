@@ -48,7 +48,8 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
 
 // Fails (kUsage) on a form that the robot's control law cannot carry out: poses and joints move the
 // target that `ee_delta_pose` keeps; `osc_pose`, which keeps none, takes changes alone; a law of
-// joints takes their numbers alone. kUnsaid passes.
+// joints takes their numbers alone. kUnsaid passes. So does it on a gripper's number that is an
+// opening where the law wants a step, and the other way round.
 Status check_form(const Profile& profile, ActionForm form, robot::ControlKind control,
                   const std::string& server);
 

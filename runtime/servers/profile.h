@@ -86,7 +86,17 @@ enum class GripperRange {
   kUnit,            // 0 closed .. 1 open
   kSignedInverted,  // +1 closed
   kUnitInverted,    // 1 closed
+  // How far it is to go, under `ee_delta_interpolated`: +1 all the way open, -1 closed, 0 not.
+  kStep,
+  kStepInverted,  // +1 closed
 };
+inline bool is_step(GripperRange range) {
+  return range == GripperRange::kStep || range == GripperRange::kStepInverted;
+}
+inline bool is_inverted(GripperRange range) {
+  return range == GripperRange::kSignedInverted || range == GripperRange::kUnitInverted ||
+         range == GripperRange::kStepInverted;
+}
 enum class PromptCase { kAsIs, kLower };
 enum class FullStop { kAsIs, kWithout, kWith };
 enum class Ensemble { kNone, kTemporal };

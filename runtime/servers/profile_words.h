@@ -79,6 +79,8 @@ inline constexpr std::array kGrippers = {
     Word<GripperRange>{"unit", GripperRange::kUnit},
     Word<GripperRange>{"signed_inverted", GripperRange::kSignedInverted},
     Word<GripperRange>{"unit_inverted", GripperRange::kUnitInverted},
+    Word<GripperRange>{"step", GripperRange::kStep},
+    Word<GripperRange>{"step_inverted", GripperRange::kStepInverted},
 };
 inline constexpr std::array kCases = {
     Word<PromptCase>{"as_is", PromptCase::kAsIs},

@@ -12,20 +12,25 @@
 namespace probe::servers {
 namespace {
 
-constexpr policy::Action kServedStill{0, 0, 0, 0, 0, 0, 1};
-
 class ServedNull final : public ServedPolicy {
  public:
+  // `size` numbers, each a change.
+  explicit ServedNull(std::size_t size) : still_(policy::Action::zeros(size)) {
+    still_.gripper() = 1;
+  }
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const Asked&, int count) override {
-    return std::vector<policy::Action>(static_cast<std::size_t>(count), kServedStill);
+    return std::vector<policy::Action>(static_cast<std::size_t>(count), still_);
   }
+
+ private:
+  policy::Action still_;
 };
 
 class ServedDigest final : public ServedPolicy {
  public:
   // Answers have `size` numbers: a tool's, or joints' and the gripper's.
-  explicit ServedDigest(std::size_t size = robot::kActionSize) : size_(size) {}
+  explicit ServedDigest(std::size_t size) : size_(size) {}
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const Asked& asked, int count) override {
     const Sha256 seen = Hasher()
@@ -132,12 +137,30 @@ Result<std::vector<std::vector<policy::Action>>> ServedPolicy::answer_all(
   return all;
 }
 
-MakeServedPolicy serve_null() {
-  return [] { return std::make_unique<ServedNull>(); };
+namespace {
+
+// What asks for small changes needs numbers that are changes.
+Status check_changes(const ServedActions& actions, const char* policy) {
+  if (actions.form != ActionForm::kJoints) return {};
+  return Failure{Fault::kUsage,
+                 std::string("`") + policy +
+                     "` moves from where the arm is, and under `joint_position` no question says "
+                     "where its joints are: serve a run's episodes (`replay:DIR`)",
+                 "--policy"};
 }
 
-MakeServedPolicy serve_digest() {
-  return [] { return std::make_unique<ServedDigest>(); };
+}  // namespace
+
+Result<MakeServedPolicy> serve_null(const ServedActions& actions) {
+  PROBE_TRY(check_changes(actions, "null"));
+  return MakeServedPolicy(
+      [size = actions.size()] { return std::make_unique<ServedNull>(size); });
+}
+
+Result<MakeServedPolicy> serve_digest(const ServedActions& actions) {
+  PROBE_TRY(check_changes(actions, "digest"));
+  return MakeServedPolicy(
+      [size = actions.size()] { return std::make_unique<ServedDigest>(size); });
 }
 
 MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes,
@@ -192,7 +215,7 @@ Result<std::unique_ptr<wire::Listener>> serve(Protocol protocol, const ServeOpti
                    "--batch"};
   }
   PROBE_TRY(check_tls(row, options.tls));
-  if (names_joints(options.form) && !row.has_joint_actions) {
+  if (names_joints(options.actions.form) && !row.has_joint_actions) {
     return Failure{Fault::kUsage,
                    "protocol " + std::string(row.word) + " has no actions of joints, as these are",
                    "--protocol"};
@@ -208,15 +231,17 @@ bool has_reset(Protocol protocol, const std::string& dialect) {
 }
 
 std::string options_for_served(Protocol protocol, const ServeOptions& options) {
-  const auto form = std::ranges::find(kActionForms, options.form, &Word<ActionForm>::value);
+  const ServedActions& actions = options.actions;
+  const auto form = std::ranges::find(kActionForms, actions.form, &Word<ActionForm>::value);
+  const auto gripper = std::ranges::find(kGrippers, actions.gripper, &Word<GripperRange>::value);
   std::string text = "action.form=" + std::string(form->text) +
-                     "&action.units=m_rad&action.rotation=vector&action.gripper=signed&"
-                     "action.threshold=none";
+                     "&action.units=m_rad&action.rotation=vector&action.gripper=" +
+                     std::string(gripper->text) + "&action.threshold=none";
   text += row_of(protocol).served_options;
   if (options.keeps_episode && row_of(protocol).has_one_place) text += "&worlds=one";
   if (options.seed) text += "&seed=" + std::to_string(*options.seed);
-  if (names_joints(options.form) && options.arm_joints > 0)
-    text += "&arm.joints=" + std::to_string(options.arm_joints);
+  if (names_joints(actions.form) && actions.arm_joints > 0)
+    text += "&arm.joints=" + std::to_string(actions.arm_joints);
   if (!options.dialect.empty()) text += "&dialect=" + options.dialect;
   if (options.batch > 1) text += "&batch=" + std::to_string(options.batch);
   return text;

@@ -41,10 +41,21 @@ class ServedPolicy {
 };
 using MakeServedPolicy = std::function<std::unique_ptr<ServedPolicy>()>;
 
-// Stays where it is, gripper open.
-MakeServedPolicy serve_null();
+// What the actions of a served policy are, as a profile says it.
+struct ServedActions {
+  ActionForm form = ActionForm::kDelta;  // changes of the tool, or joints
+  int arm_joints = 0;                    // whose actions these are, of joints
+  GripperRange gripper = GripperRange::kSigned;
+  std::size_t size() const {
+    return names_joints(form) ? static_cast<std::size_t>(arm_joints) + 1 : robot::kActionSize;
+  }
+  bool operator==(const ServedActions&) const = default;
+};
+// Stays where it is, gripper open. Of positions of joints there is none (kUsage), nor a digest: no
+// question says where the joints are.
+Result<MakeServedPolicy> serve_null(const ServedActions& actions = {});
 // Moves of at most 8 mm and 0.02 rad that follow from picture and words alone.
-MakeServedPolicy serve_digest();
+Result<MakeServedPolicy> serve_digest(const ServedActions& actions = {});
 // Episodes' actions by episode_key of their first picture and their instruction. Such a picture
 // begins its episode anew where `begins_anew` (protocols without a reset), else only after a reset.
 using RecordedEpisodes = std::map<std::string, std::vector<policy::Action>>;
@@ -64,8 +75,7 @@ struct ServeOptions {
   // Questions of a message, at most, or of those that vla-eval's server gathers; 1: no batches.
   int batch = 1;
   std::string dialect;                   // of GR00T and OpenVLA, as in a profile
-  ActionForm form = ActionForm::kDelta;  // of the policy's actions: changes of the tool, or joints
-  int arm_joints = 0;                    // whose actions these are, of joints
+  ServedActions actions;
   bool keeps_episode = false;            // the policy does, from one question to the next
   std::optional<int> seed = {};          // its episodes are of this one alone
   wire::TlsFiles tls = {};               // of protocols over WebSocket and HTTP; none: plain

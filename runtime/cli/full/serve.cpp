@@ -69,14 +69,37 @@ Result<std::string> folder_of(const ServeArguments& arguments, int* exit) {
   return summary.out;
 }
 
+// What the robots of F take; without F a tool's changes.
+Result<servers::ServedActions> actions_asked(const ServeArguments& arguments, int* exit) {
+  if (arguments.run.file.empty()) return servers::ServedActions{};
+  const LoadedPlan loaded = load_runnable(arguments.run);
+  if (!loaded.plan) {
+    *exit = loaded.exit;
+    return servers::ServedActions{};
+  }
+  PROBE_ASSIGN(const auto options, to_options(arguments.run));
+  PROBE_ASSIGN(const auto selection, run::select_jobs(*loaded.plan, options, false));
+  std::vector<std::uint32_t> tasks;
+  for (const run::EpisodeJob& job : selection.jobs) {
+    if (tasks.empty() || tasks.back() != job.task) tasks.push_back(job.task);
+  }
+  return run::only_actions(*loaded.plan, tasks, options.assets);
+}
+
 int serve_verb(const ServeArguments& arguments) {
   const auto protocol = protocol_of(arguments.protocol);
   if (!protocol) return report(protocol.failure());
   servers::ServeOptions options = arguments.options;
-  if (arguments.run.policy == "null") {
-    options.policy = servers::serve_null();
-  } else if (arguments.run.policy == "digest") {
-    options.policy = servers::serve_digest();
+  if (arguments.run.policy == "null" || arguments.run.policy == "digest") {
+    int exit = kFine;
+    const auto actions = actions_asked(arguments, &exit);
+    if (!actions) return report(actions.failure());
+    if (exit != kFine) return exit;
+    options.actions = *actions;
+    auto made = arguments.run.policy == "null" ? servers::serve_null(*actions)
+                                               : servers::serve_digest(*actions);
+    if (!made) return report(made.failure());
+    options.policy = std::move(*made);
   } else {
     int exit = kFine;
     const auto dir = folder_of(arguments, &exit);
@@ -87,8 +110,7 @@ int serve_verb(const ServeArguments& arguments) {
     options.seed = *seed;
     const auto actions = run::only_actions(*dir);
     if (!actions) return report(actions.failure());
-    options.form = actions->form;
-    options.arm_joints = actions->arm_joints;
+    options.actions = *actions;
     const bool together = options.batch > 1;
     const auto episodes =
         together ? run::recorded_steps(*dir, options.chunk) : run::recorded_episodes(*dir);
@@ -124,11 +146,10 @@ void add_serve(Verb app, int& exit) {
   auto arguments = std::make_shared<ServeArguments>();
   Verb verb = app.add_subcommand("serve", "a policy behind a server, to try a client or a harness");
   verb.footer(
-      "Policies: null; digest (small moves that follow from picture and words); replay:DIR, a "
-      "run's\n"
-      "episodes, each known by its first picture; expert, noisy:SIGMA and the others of `run`, "
-      "which\n"
-      "are run over F into -o first. Prints the address to ask at; ends with SIGINT or SIGTERM.\n"
+      "Policies: null; digest (small moves that follow from picture and words), both of steps of\n"
+      "joints where the robot of F is told those; replay:DIR, a run's episodes, each known by its\n"
+      "first picture; expert, noisy:SIGMA and the others of `run`, which are run over F into -o\n"
+      "first. Prints the address to ask at; ends with SIGINT or SIGTERM.\n"
       "example: vlaprobe serve suite/intact.probe --policy expert --tasks carrot_on_plate \\\n"
       "           -o runs/expert --protocol gr00t --port 5555");
   verb.add_option("F", arguments->run.file, ".probe text or .plan file");

@@ -66,7 +66,7 @@ TEST_CASE("batches that are mixed up after they were proved spoil what they may 
   const plan::Plan plan = table_plan(4, 4);
   std::atomic<int> messages = 0;
   ServeOptions options;
-  options.policy = [inner = serve_digest(), &messages] {
+  options.policy = [inner = serve_digest().value(), &messages] {
     return std::make_unique<Reversing>(inner(), messages);
   };
   options.batch = 4;

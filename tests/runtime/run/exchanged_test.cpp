@@ -101,7 +101,7 @@ class Switched final : public servers::ServedPolicy {
     std::atomic<int> proofs = 0;  // questions of no episode
   };
   explicit Switched(std::shared_ptr<State> state)
-      : state_(std::move(state)), digest_(servers::serve_digest()()) {}
+      : state_(std::move(state)), digest_(servers::serve_digest().value()()) {}
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
     if (servers::is_known_observation(asked.picture.bytes, asked.words)) ++state_->proofs;

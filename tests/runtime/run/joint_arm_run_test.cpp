@@ -73,8 +73,7 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
     CHECK((actions->form == servers::ActionForm::kJoints) ==
           (std::string(law) == "joint_position"));
     CHECK(actions->arm_joints == 7);
-    served.form = actions->form;
-    served.arm_joints = actions->arm_joints;
+    served.actions = *actions;
     CHECK(servers::options_for_served(servers::Protocol::kOpenpi, served).find("&arm.joints=7") !=
           std::string::npos);
     served.policy = servers::serve_recorded(*episodes, false);
@@ -98,7 +97,7 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
     }
     // A server whose actions are a tool's is refused before the first episode.
     servers::ServeOptions tool;
-    tool.policy = servers::serve_null();
+    tool.policy = servers::serve_null().value();
     const auto other = servers::serve(servers::Protocol::kOpenpi, tool);
     REQUIRE_MESSAGE(other.ok(), to_text(other.failure()));
     const auto refused =
@@ -109,6 +108,48 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
                                                  std::string(law) + "`") != std::string::npos,
                   refused.failure().message);
   }
+}
+
+TEST_CASE("null and digest are served to an arm that is told steps, and refused one told positions") {
+  const auto of_task = [](const char* name) {
+    const std::uint32_t task[] = {example().find_task(name).value()};
+    const auto actions = only_actions(example(), task, options_for("").assets);
+    REQUIRE_MESSAGE(actions.ok(), to_text(actions.failure()));
+    return *actions;
+  };
+  const servers::ServedActions steps = of_task("stepped_carrot_on_plate");
+  CHECK(steps.form == servers::ActionForm::kJointSteps);
+  CHECK(steps.arm_joints == 7);
+  for (const bool is_null : {true, false}) {
+    const TemporaryFolder folder;
+    servers::ServeOptions served;
+    served.actions = steps;
+    served.policy = (is_null ? servers::serve_null(steps) : servers::serve_digest(steps)).value();
+    const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
+    REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+    must_run(example(), two_of("stepped_carrot_on_plate", folder / "asked",
+                               address_of(**listener, served)));
+    const auto rows = read_results(folder / "asked");
+    REQUIRE(rows.ok());
+    REQUIRE(rows->size() == 2);
+    const auto trace = store::read_stored_trace(rows->front());
+    REQUIRE(trace.ok());
+    policy::Action still = policy::Action::zeros(8);
+    still.gripper() = 1;
+    CHECK((trace->steps.front().action == still) == is_null);
+  }
+  const servers::ServedActions positions = of_task("told_carrot_on_plate");
+  for (const auto& refused : {servers::serve_null(positions), servers::serve_digest(positions)}) {
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.failure().code == Fault::kUsage);
+    CHECK(refused.failure().message.find("under `joint_position` no question says where its joints "
+                                         "are") != std::string::npos);
+  }
+  const std::uint32_t both[] = {example().find_task("told_carrot_on_plate").value(),
+                                example().find_task("stepped_carrot_on_plate").value()};
+  CHECK(only_actions(example(), both, options_for("").assets)
+            .failure()
+            .message.find("several laws or arms") != std::string::npos);
 }
 
 // As somebody else's text has them: the same task, its arm told steps in place of positions.
@@ -144,8 +185,8 @@ TEST_CASE("stored positions of joints are not acted as steps of them") {
 
 TEST_CASE("actions of joints are served by protocols that have them alone, and of one law") {
   servers::ServeOptions options;
-  options.form = servers::ActionForm::kJoints;
-  options.policy = servers::serve_null();
+  options.actions.form = servers::ActionForm::kJoints;
+  options.policy = servers::serve_null().value();
   const auto refused = servers::serve(servers::Protocol::kIntact, options);
   REQUIRE_FALSE(refused.ok());
   CHECK(refused.failure().message == "protocol intact has no actions of joints, as these are");

@@ -99,7 +99,7 @@ class Keeping final : public servers::ServedPolicy {
 
  private:
   Wrapper& wrapper_;
-  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest()();
+  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest().value()();
 };
 
 TEST_CASE("who was killed in an episode leaves no words to the next one at a server that keeps") {

@@ -185,7 +185,7 @@ TEST_CASE("a question under way at an episode's end holds nobody up, and its ans
    private:
     Door& door_;
     std::chrono::milliseconds time_;
-    std::unique_ptr<ServedPolicy> inner_ = serve_digest()();
+    std::unique_ptr<ServedPolicy> inner_ = serve_digest().value()();
   };
   TemporaryFolder folder;
   auto bytes = TablePlan(VLAPROBE_SOURCE_DIR "/assets").write(2, 3, [](plan::Records& records) {
@@ -292,7 +292,7 @@ TEST_CASE(
   const plan::Plan plan = plan::Plan::from_bytes(std::move(*bytes)).value();
   ServeOptions options;
   options.policy = [] {
-    return std::make_unique<Late>(serve_digest()(), std::chrono::milliseconds(1400));
+    return std::make_unique<Late>(serve_digest().value()(), std::chrono::milliseconds(1400));
   };
   const auto listener = serve(Protocol::kLeRobot, options);
   REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));

@@ -387,7 +387,7 @@ TEST_CASE("batches are refused where a protocol or a profile has none") {
   CHECK(refusal(Protocol::kOpenpi, "batch=8&worlds=one").find("`worlds = one`") !=
         std::string::npos);
   ServeOptions options;
-  options.policy = serve_digest();
+  options.policy = serve_digest().value();
   options.batch = 8;
   const auto listener = serve(Protocol::kIntact, options);
   REQUIRE_FALSE(listener.ok());
@@ -405,7 +405,7 @@ TEST_CASE("a served digest answers batches as it answers alone; one that mixes t
   for (const Protocol protocol : {Protocol::kOpenpi, Protocol::kStarVla}) {
     CAPTURE(std::string(to_word(protocol)));
     ServeOptions options;
-    options.policy = serve_digest();
+    options.policy = serve_digest().value();
     options.batch = 8;
     options.chunk = 4;
     const auto listener = serve(protocol, options);
@@ -438,7 +438,7 @@ TEST_CASE("a served digest answers batches as it answers alone; one that mixes t
   }
   // Stock openpi: a server that takes no batches is told before the first episode.
   ServeOptions alone;
-  alone.policy = serve_digest();
+  alone.policy = serve_digest().value();
   const auto stock = serve(Protocol::kOpenpi, alone);
   REQUIRE(stock.ok());
   const auto choice =

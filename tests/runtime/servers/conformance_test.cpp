@@ -61,6 +61,9 @@ TEST_CASE("each thing that is wrong is found, with the field that mends it") {
         "wrong: action.gripper = signed");
   CHECK(verdict_of(tested("inverted"), "polarity") == "warning: action.gripper = signed_inverted");
   CHECK(verdict_of(tested("inverted", "action.gripper=signed_inverted"), "polarity") == "fine");
+  // An open hand with nothing to take makes no step.
+  CHECK(verdict_of(tested("fine", "action.gripper=step"), "gripper") ==
+        "warning: action.gripper = unit");
   CHECK(verdict_of(tested("euler"), "rotation") == "wrong: action.rotation = euler");
   CHECK(verdict_of(tested("euler", "action.rotation=euler"), "rotation") == "fine");
   CHECK(verdict_of(tested("vector", "action.rotation=euler"), "rotation") ==

@@ -132,6 +132,37 @@ TEST_CASE("a law without a target of its own takes changes alone, and says so be
   CHECK(read.failure().message.find("are `absolute` (`action.form`)") != std::string::npos);
 }
 
+TEST_CASE("a gripper's number that is an opening is none where the law wants a step, nor back") {
+  using robot::ControlKind;
+  const auto takes = [](const char* gripper, const char* threshold, ControlKind control) {
+    auto profile = parse_profile(std::string("protocol = openpi\nimage = first -> image\naction.form = delta\n"
+                                             "action.gripper = ") +
+                                     gripper + "\naction.threshold = " + threshold + "\n",
+                                 "mine");
+    REQUIRE_MESSAGE(profile.ok(), to_text(profile.failure()));
+    return check_form(*profile, ActionForm::kDelta, control, "server");
+  };
+  for (const char* opening : {"signed", "unit", "signed_inverted", "unit_inverted"}) {
+    CAPTURE(opening);
+    CHECK(takes(opening, "none", ControlKind::kEeDeltaPose).ok());
+    const Status refused = takes(opening, "none", ControlKind::kEeDeltaInterpolated);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.failure().code == Fault::kUsage);
+    CHECK(refused.failure().message.find("`" + std::string(opening) +
+                                         "` (`action.gripper`), an opening") != std::string::npos);
+    // All the way or none of it: a step says the same.
+    CHECK(takes(opening, "0.5", ControlKind::kEeDeltaInterpolated).ok());
+  }
+  for (const char* step : {"step", "step_inverted"}) {
+    CAPTURE(step);
+    CHECK(takes(step, "none", ControlKind::kEeDeltaInterpolated).ok());
+    for (const ControlKind law :
+         {ControlKind::kEeDeltaPose, ControlKind::kOscPose, ControlKind::kJointDelta})
+      CHECK(takes(step, "none", law).failure().message.find("how far it is to go, and a robot") !=
+            std::string::npos);
+  }
+}
+
 TEST_CASE("poses and positions of joints show themselves by the arm's other side") {
   const Profile profile;
   const RawAction pose{0.3, 0.05, 0.14, 0, 1.5, 0, 1}, other_pose{0.3, -0.05, 0.14, 0, 1.5, 0, 1};

@@ -45,7 +45,7 @@ TEST_CASE("a served digest is proved to read, and a served null not to, on every
     CAPTURE(std::string(to_word(protocol)));
     for (const bool reads : {true, false}) {
       ServeOptions options;
-      options.policy = reads ? serve_digest() : serve_null();
+      options.policy = reads ? serve_digest().value() : serve_null().value();
       const auto listener = serve(protocol, options);
       REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
       const auto choice = choose_server(protocol, "//127.0.0.1:" + (*listener)->port() + "?" +
@@ -73,7 +73,7 @@ TEST_CASE("a policy test ends in 20 answers on every protocol, and finds nothing
 
    private:
     std::atomic<int>& answers_;
-    std::unique_ptr<ServedPolicy> inner_ = serve_digest()();
+    std::unique_ptr<ServedPolicy> inner_ = serve_digest().value()();
   };
   for (const Protocol protocol : all_protocols()) {
     for (const bool has_batches : {false, true}) {
@@ -118,7 +118,7 @@ TEST_CASE("a dialect is one of the protocol's own, asking and serving") {
   for (const Protocol protocol : all_protocols()) {
     CAPTURE(std::string(to_word(protocol)));
     ServeOptions options;
-    options.policy = serve_null();
+    options.policy = serve_null().value();
     options.dialect = "yaml";
     const auto served = serve(protocol, options);
     REQUIRE_FALSE(served.ok());
@@ -142,7 +142,7 @@ TEST_CASE("a dialect is one of the protocol's own, asking and serving") {
 
 TEST_CASE("a server listens at a name, too; one that nobody knows is refused") {
   ServeOptions options;
-  options.policy = serve_null();
+  options.policy = serve_null().value();
   options.address = "localhost";
   for (const Protocol protocol : all_protocols()) {
     CAPTURE(std::string(to_word(protocol)));
@@ -164,7 +164,7 @@ TEST_CASE("served over TLS, a policy reads as it does plain, and only for whoeve
     CAPTURE(std::string(to_word(protocol)));
     ++secured;
     ServeOptions options;
-    options.policy = serve_digest();
+    options.policy = serve_digest().value();
     options.tls = certificate.files();
     const auto listener = serve(protocol, options);
     REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
@@ -213,7 +213,7 @@ TEST_CASE("a server shows no certificate that is not one, and none where no URL 
   const Certificate certificate, other;
   const auto refusal = [](Protocol protocol, const wire::TlsFiles& files) {
     ServeOptions options;
-    options.policy = serve_null();
+    options.policy = serve_null().value();
     options.tls = files;
     const auto refused = serve(protocol, options);
     REQUIRE_FALSE(refused.ok());
@@ -242,7 +242,7 @@ TEST_CASE("a server shows no certificate that is not one, and none where no URL 
 
 TEST_CASE("a port that is taken, and one that is none, are refused") {
   ServeOptions options;
-  options.policy = serve_null();
+  options.policy = serve_null().value();
   for (const Protocol protocol : all_protocols()) {
     CAPTURE(std::string(to_word(protocol)));
     options.port = "0";

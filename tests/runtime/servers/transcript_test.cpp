@@ -37,7 +37,7 @@ TEST_CASE("a recorded conversation is played back as it was, on every protocol")
   for (const Protocol protocol : all_protocols()) {
     CAPTURE(std::string(to_word(protocol)));
     ServeOptions options;
-    options.policy = serve_digest();
+    options.policy = serve_digest().value();
     auto server = serve(protocol, options);
     REQUIRE_MESSAGE(server.ok(), to_text(server.failure()));
     const ServerChoice there = choice_of(protocol, (*server)->port(), options);

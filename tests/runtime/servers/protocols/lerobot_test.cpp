@@ -217,7 +217,7 @@ TEST_CASE("LeRobot: a policy that cannot be loaded is named, and with every late
 
 TEST_CASE("LeRobot: worlds at one server take turns, and each has its own answers") {
   ServeOptions options;
-  options.policy = serve_digest();
+  options.policy = serve_digest().value();
   const auto listener = serve(Protocol::kLeRobot, options);
   REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
   const std::string address = "lerobot://127.0.0.1:" + (*listener)->port() + "?" +
