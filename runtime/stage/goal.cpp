@@ -1,7 +1,6 @@
 #include "runtime/stage/goal.h"
 
 #include "runtime/plan/roles.h"
-#include "runtime/vm/derived_solution.h"
 #include "runtime/vm/made_up.h"
 
 namespace probe::stage {
@@ -33,11 +32,8 @@ Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
   using policy::Goal;
   const plan::TaskRoles roles = plan::roles_of(plan.tables(), plan.tasks()[task]);
   if (!roles.has_source()) return Goal::kOther;
-  // What asks for a source, a target and nothing else is taken for the usual task in case of doubt.
-  const bool is_usual = roles.has_both() && roles.others.empty();
-  const Goal else_goal = is_usual ? Goal::kOnTarget : Goal::kOther;
   const auto success = plan.find_metric(plan.tasks()[task], "success");
-  if (!success) return else_goal;
+  if (!success) return Goal::kOther;
   if (roles.has_target()) {
     PROBE_ASSIGN(const bool lies, lies_on_target(plan, task, *success));
     if (lies) return Goal::kOnTarget;
@@ -47,9 +43,7 @@ Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
   }
   PROBE_ASSIGN(const bool held, holds_of(plan, task, *success, {0, kAside, 0}));
   if (held) return Goal::kAway;
-  // Rather skills that make it than the usual task.
-  PROBE_ASSIGN(const auto skills, vm::derive_solution(plan, task));
-  return skills.empty() ? else_goal : Goal::kOther;
+  return Goal::kOther;
 }
 
 }  // namespace probe::stage

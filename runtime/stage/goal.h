@@ -11,9 +11,8 @@
 namespace probe::stage {
 
 // kAway where a source that lies on the target, let go, is no success and one held far from it is;
-// without a target kLifted or kAway where one held above its start or far from it is. For all else
-// kOnTarget where the task has a source, a target and no other role, or kOther;
-// kOther too where skills make a success that is no usual one: joints of fixtures at their ends.
+// without a target kLifted or kAway where one held above its start or far from it is. All else is
+// kOther: it is done by skills where they make success, and not attempted where none do.
 Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task);
 
 }  // namespace probe::stage

@@ -39,3 +39,13 @@ TEST_CASE("what asks for a drawer to be open asks for nothing that a thing on a 
     CHECK(*goal == policy::Goal::kOther);
   }
 }
+
+TEST_CASE("every published task asks for what one source is moved for") {
+  const plan::Plan& plan = test::suite_plan();
+  for (std::uint32_t task = 0; task < plan.tasks().size(); ++task) {
+    CAPTURE(std::string(plan.text(plan.tasks()[task].name)));
+    const auto goal = stage::goal_of(plan, task);
+    REQUIRE(goal.ok());
+    CHECK(*goal != policy::Goal::kOther);
+  }
+}
