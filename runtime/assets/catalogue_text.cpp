@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "runtime/assets/identifier.h"
 #include "runtime/base/printable.h"
 
 namespace probe::assets {
@@ -27,12 +28,10 @@ bool is_plain(const std::string& folder) {
 }
 
 std::string identifier(const std::string& folder, std::set<std::string>& taken) {
-  std::string name = folder;
+  std::string name = identifier_of(folder, "model");
   for (char& c : name) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (!is_letter(c) && !is_digit(c)) c = '_';
   }
-  if (!is_letter(name[0])) name = (name[0] == '_' ? "model" : "model_") + name;
   std::string free = name;
   for (int i = 2; !taken.insert(free).second; ++i) free = name + "_" + std::to_string(i);
   return free;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "runtime/assets/identifier.h"
 #include "runtime/base/trig.h"
 
 namespace probe::assets {
@@ -103,16 +104,7 @@ std::string region(const MujocoSite& site, const std::string& of) {
 
 }  // namespace
 
-std::string mujoco_identifier(const std::string& name) {
-  std::string made;
-  for (const char c : name) {
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-    const bool digit = c >= '0' && c <= '9';
-    if (made.empty() && !letter) made = "the_";
-    made += letter || digit ? c : '_';
-  }
-  return made.empty() ? "unnamed" : made;
-}
+std::string mujoco_identifier(const std::string& name) { return identifier_of(name, "the"); }
 
 std::string fixture_urdf(const std::string& name, const std::vector<DescribedLink>& links,
                          const std::vector<MujocoJoint>& joints) {
