@@ -229,8 +229,8 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !same_choice(a, b) ||
       (a.scene != b.scene && !is_same_place(model, model.scenes[a.scene], model.scenes[b.scene])) ||
       layout.joints_jitter != model.layouts[b.layout].joints_jitter ||
-      !same_given_arms(model, a, b) || a.delay != b.delay ||
-      !same_motions(model, a, b) || !same_sensors(model, a, b) ||
+      !same_given_arms(model, a, b) || a.delay != b.delay || !same_motions(model, a, b) ||
+      !same_sensors(model, a, b) ||
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) ||
       joint_starts_in_all(model, a) != joint_starts_in_all(model, b) ||

@@ -69,9 +69,9 @@ struct FixtureReader {
     said.rest = read_either(context, stmt.rest, dim::kAngle, dim::kLength,
                             {"a spring rests at a length, or at an angle where it turns",
                              plan::Magnitude::kJointPosition});
-    said.armature = read_either(
-        context, stmt.armature, dim::kInertia, dim::kMass,
-        {"`armature` is in kg, or in kgm2 where it turns", plan::Magnitude::kArmature});
+    said.armature =
+        read_either(context, stmt.armature, dim::kInertia, dim::kMass,
+                    {"`armature` is in kg, or in kgm2 where it turns", plan::Magnitude::kArmature});
     said.start = read_either(context, stmt.start, dim::kAngle, dim::kLength,
                              {"a joint starts at a length, or at an angle where it turns",
                               plan::Magnitude::kJointPosition});
@@ -271,7 +271,8 @@ bool acts_alike(const Fixture& a, const Fixture& b) {
     return x.name == y.name && x.friction == y.friction && x.damping == y.damping &&
            x.stiffness == y.stiffness && x.rest == y.rest && x.armature == y.armature;
   };
-  return a.urdf.text == b.urdf.text && a.turn == b.turn && a.friction == b.friction && std::ranges::equal(a.joints, b.joints, same_joint);
+  return a.urdf.text == b.urdf.text && a.turn == b.turn && a.friction == b.friction &&
+         std::ranges::equal(a.joints, b.joints, same_joint);
 }
 
 }  // namespace

@@ -58,7 +58,8 @@ lower::PlacedBody placed_part(const Model& model, const Task& task, const OfFixt
   const auto tree = tree_of(fixture);
   if (!tree) return body;
   const auto joints = joints_of(model, model.scenes[task.scene], of.fixture, all_joints);
-  const Pose pose = part_pose(place_of(model.scenes[task.scene], fixture), fixture, *tree, joints, of.part);
+  const Pose pose =
+      part_pose(place_of(model.scenes[task.scene], fixture), fixture, *tree, joints, of.part);
   const auto link = static_cast<std::size_t>(fixture.parts[of.part].index);
   body.origin = around(pose.position, slack, slack);
   body.position = around(pose.apply(fixture.model->links[link].center_of_mass), slack, slack);

@@ -24,8 +24,8 @@ Referring referring(const Model& model, const Task& task, ObjectId object);
 // Of a role that one object fills; no text where nothing fills it.
 Referring referring(const Model& model, const Task& task, RoleId role);
 
-// The fixture with joints that a slot names: `{the cabinet}`. It has no role, and no name but that of
-// its declaration.
+// The fixture with joints that a slot names: `{the cabinet}`. It has no role, and no name but that
+// of its declaration.
 std::optional<FixtureId> fixture_of(const Model& model, const SlotRef& slot);
 
 // Whom a slot means in a task: what fills its role, of `{the other goods}` what no slot before it

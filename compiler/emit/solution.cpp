@@ -66,7 +66,10 @@ void Emitter::add_skills(const sema::Task& task, const std::vector<lower::Body>&
           std::uint32_t owner = scenes_[task.scene];
           if (to.owner == plan::BodyKind::kObject) owner = objects_[to.objects.front()];
           if (to.owner == plan::BodyKind::kPart)
-            owner = records().fixtures[fixture_index(model_.scenes[task.scene], to.fixture)].parts.first + to.part;
+            owner = records()
+                        .fixtures[fixture_index(model_.scenes[task.scene], to.fixture)]
+                        .parts.first +
+                    to.part;
           record.region = region_named(to.region, to.owner, owner);
           break;
         }

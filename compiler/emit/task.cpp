@@ -12,8 +12,7 @@
 
 namespace probe::emit {
 
-plan::Slice Emitter::add_bodies(const sema::Scene& scene,
-                                const std::vector<lower::Body>& bodies) {
+plan::Slice Emitter::add_bodies(const sema::Scene& scene, const std::vector<lower::Body>& bodies) {
   std::vector<plan::BodyRecord> rows;
   for (const lower::Body& body : bodies) {
     const bool is_object = body.kind == plan::BodyKind::kObject;
@@ -101,9 +100,8 @@ plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::
         const std::uint32_t fixture = fixture_index(model_.scenes[task.scene], of.fixture);
         return records().fixtures[fixture].parts.first + of.part;
       };
-      next = is_part
-                 ? body_in_role(bodies, role)
-                 : region_named(model_.objects[thing].name, plan::BodyKind::kPart, owner());
+      next = is_part ? body_in_role(bodies, role)
+                     : region_named(model_.objects[thing].name, plan::BodyKind::kPart, owner());
       add(writer_.text(model_.roles[id].name),
           is_part ? plan::RoleKind::kPart : plan::RoleKind::kRegion, 1);
     }

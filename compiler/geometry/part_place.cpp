@@ -32,8 +32,8 @@ Pose place_of(const Scene& scene, const Fixture& fixture) {
   return pose_of(position, fixture.turn.rotation);
 }
 
-Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
-               std::uint32_t part) {
+Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree,
+               std::span<const double> joints, std::uint32_t part) {
   std::vector<Pose> poses(tree.link_count());
   tree.link_poses(joints, poses);
   return place * poses[static_cast<std::size_t>(fixture.parts[part].index)];

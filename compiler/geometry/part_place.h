@@ -22,7 +22,7 @@ std::span<const double> joints_of(const Model& model, const Scene& scene, Fixtur
 Pose place_of(const Scene& scene, const Fixture& fixture);
 
 // The frame of a part's link in the world, of a fixture at `place`, its joints (m, rad) there.
-Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree, std::span<const double> joints,
-               std::uint32_t part);
+Pose part_pose(const Pose& place, const Fixture& fixture, const robot::Tree& tree,
+               std::span<const double> joints, std::uint32_t part);
 
 }  // namespace probe::sema

@@ -28,8 +28,9 @@ struct PartBox {
 
 class Travel {
  public:
-  // Of a fixture that stands in the scene. Reads the collision meshes that the URDF names; one that cannot be read, which is reported
-  // where assets are collected, fills nothing. Nothing when the fixture has no description.
+  // Of a fixture that stands in the scene. Reads the collision meshes that the URDF names; one that
+  // cannot be read, which is reported where assets are collected, fills nothing. Nothing when the
+  // fixture has no description.
   static std::optional<Travel> of(const Scene& scene, const Fixture& fixture,
                                   const std::string& asset_root);
 

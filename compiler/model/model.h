@@ -330,7 +330,7 @@ struct Scene {
   std::array<double, 4> area{};
   std::optional<Spelled> fixture;
   std::array<double, 3> fixture_position{};
-  std::vector<FixtureId> fixtures;                       // with joints
+  std::vector<FixtureId> fixtures;  // with joints
   // m: how much higher than they say its fixtures stand, as the surface is where it was copied.
   double fixtures_lift = 0;
   std::vector<Region> surface_regions, fixture_regions;  // about (0, 0, surface_z); in the mesh

@@ -120,7 +120,8 @@ class Only {
     if (known_ && *known_ != here) {
       return Failure{
           Fault::kUsage,
-          std::string("has actions of several laws or arms, and a server answers in those of one: ") +
+          std::string(
+              "has actions of several laws or arms, and a server answers in those of one: ") +
               mend,
           where};
     }

@@ -1,8 +1,8 @@
 // Actions out of stored traces, for the policy replay:DIR and for servers of recorded episodes.
 #pragma once
 
-#include <memory>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,8 +27,8 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_episodes(const
 Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const std::string& dir,
                                                                         int most);
 
-// What the robots of these tasks (indices) take, and what the actions of a run's valid episodes are.
-// Both fail (kUsage) where there are several.
+// What the robots of these tasks (indices) take, and what the actions of a run's valid episodes
+// are. Both fail (kUsage) where there are several.
 Result<servers::ServedActions> only_actions(const plan::Plan& plan,
                                             std::span<const std::uint32_t> tasks,
                                             const std::string& assets);

@@ -230,8 +230,9 @@ Check judge_gripper(const Profile& profile, const std::vector<RawAction>& action
     if (!rests) {
       check.verdict = Verdict::kWarning;
       check.found += ", and no answer leaves the fingers where they are: an opening, not a step?";
-      check.fix = {(range.low < -0.2 ? "action.gripper = signed" : "action.gripper = unit") + ending,
-                   range.low < -0.2 ? "action.threshold = 0" : "action.threshold = 0.5"};
+      check.fix = {
+          (range.low < -0.2 ? "action.gripper = signed" : "action.gripper = unit") + ending,
+          range.low < -0.2 ? "action.threshold = 0" : "action.threshold = 0.5"};
     }
   } else if (is_unit(profile.action_gripper) && range.low < -0.2) {
     check.verdict = Verdict::kWrong;

@@ -184,8 +184,8 @@ Status check_said(const Profile& adapted, const std::vector<OpenField>& left,
 
 namespace {
 
-// Where the law adds the gripper's number to what was asked for last, an opening is none: 0.6 of the
-// way, said twice, would be all of it. With a threshold each is all the way, which is the same.
+// Where the law adds the gripper's number to what was asked for last, an opening is none: 0.6 of
+// the way, said twice, would be all of it. With a threshold each is all the way, which is the same.
 Status check_gripper(const Profile& profile, const robot::KindRow& law, const std::string& server) {
   const bool takes_steps = law.kind == robot::ControlKind::kEeDeltaInterpolated;
   const bool is_said = is_step(profile.action_gripper);
@@ -196,10 +196,12 @@ Status check_gripper(const Profile& profile, const robot::KindRow& law, const st
       Fault::kUsage,
       "the gripper's number of profile `" + profile.name + "` is `" + std::string(word) +
           "` (`action.gripper`), " + (is_said ? "how far it is to go" : "an opening") +
-          ", and a robot of the run is controlled by `" + std::string(law.word) + "`, which takes " +
-          (takes_steps ? "how far it is to go (`action.gripper = step`, or a threshold that opens or "
-                         "closes it whole: `action.threshold`)"
-                       : "an opening (`action.gripper = signed`)"),
+          ", and a robot of the run is controlled by `" + std::string(law.word) +
+          "`, which takes " +
+          (takes_steps
+               ? "how far it is to go (`action.gripper = step`, or a threshold that opens or "
+                 "closes it whole: `action.threshold`)"
+               : "an opening (`action.gripper = signed`)"),
       server};
 }
 

@@ -153,14 +153,12 @@ Status check_changes(const ServedActions& actions, const char* policy) {
 
 Result<MakeServedPolicy> serve_null(const ServedActions& actions) {
   PROBE_TRY(check_changes(actions, "null"));
-  return MakeServedPolicy(
-      [size = actions.size()] { return std::make_unique<ServedNull>(size); });
+  return MakeServedPolicy([size = actions.size()] { return std::make_unique<ServedNull>(size); });
 }
 
 Result<MakeServedPolicy> serve_digest(const ServedActions& actions) {
   PROBE_TRY(check_changes(actions, "digest"));
-  return MakeServedPolicy(
-      [size = actions.size()] { return std::make_unique<ServedDigest>(size); });
+  return MakeServedPolicy([size = actions.size()] { return std::make_unique<ServedDigest>(size); });
 }
 
 MakeServedPolicy serve_recorded(std::shared_ptr<const RecordedEpisodes> episodes,
@@ -234,9 +232,10 @@ std::string options_for_served(Protocol protocol, const ServeOptions& options) {
   const ServedActions& actions = options.actions;
   const auto form = std::ranges::find(kActionForms, actions.form, &Word<ActionForm>::value);
   const auto gripper = std::ranges::find(kGrippers, actions.gripper, &Word<GripperRange>::value);
-  std::string text = "action.form=" + std::string(form->text) +
-                     "&action.units=m_rad&action.rotation=vector&action.gripper=" +
-                     std::string(gripper->text) + "&action.threshold=none";
+  std::string text =
+      "action.form=" + std::string(form->text) +
+      "&action.units=m_rad&action.rotation=vector&action.gripper=" + std::string(gripper->text) +
+      "&action.threshold=none";
   text += row_of(protocol).served_options;
   if (options.keeps_episode && row_of(protocol).has_one_place) text += "&worlds=one";
   if (options.seed) text += "&seed=" + std::to_string(*options.seed);

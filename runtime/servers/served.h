@@ -74,11 +74,11 @@ struct ServeOptions {
   int chunk = 1;  // actions of an answer, at most; vla-eval's have one
   // Questions of a message, at most, or of those that vla-eval's server gathers; 1: no batches.
   int batch = 1;
-  std::string dialect;                   // of GR00T and OpenVLA, as in a profile
+  std::string dialect;  // of GR00T and OpenVLA, as in a profile
   ServedActions actions;
-  bool keeps_episode = false;            // the policy does, from one question to the next
-  std::optional<int> seed = {};          // its episodes are of this one alone
-  wire::TlsFiles tls = {};               // of protocols over WebSocket and HTTP; none: plain
+  bool keeps_episode = false;    // the policy does, from one question to the next
+  std::optional<int> seed = {};  // its episodes are of this one alone
+  wire::TlsFiles tls = {};       // of protocols over WebSocket and HTTP; none: plain
   MakeServedPolicy policy;
 };
 

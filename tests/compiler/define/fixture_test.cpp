@@ -307,9 +307,11 @@ TEST_CASE("what stands on a surface goes with its height, fixtures with joints, 
       std::string(test::kChest) +
       "scene low like room { surface 70cm area (-50cm, -50cm) .. (50cm, 50cm) }\n"
       "scene lower like low { surface 65cm area (-50cm, -50cm) .. (50cm, 50cm) }\n"
-      "scene written like room { surface 70cm area (-50cm, -50cm) .. (50cm, 50cm); fixture chest }\n"
+      "scene written like room { surface 70cm area (-50cm, -50cm) .. (50cm, 50cm); fixture chest "
+      "}\n"
       "task t like red_on_tray { scene room }\n"
-      "variants of t { t_low { scene low }; t_lower { scene lower }; t_written { scene written } }\n");
+      "variants of t { t_low { scene low }; t_lower { scene lower }; t_written { scene written } "
+      "}\n");
   CHECK_MESSAGE(a->codes() == "", a->said());
   const auto lift = [&](const char* name) {
     return a->model.scenes[a->task(name).scene].fixtures_lift;
@@ -320,15 +322,17 @@ TEST_CASE("what stands on a surface goes with its height, fixtures with joints, 
   CHECK(lift("t_written") == 0);
   CHECK(a->task("t_low").axes == plan::bit(plan::Axis::kSceneGeometry));
   CHECK(a->task("t_lower").axes == plan::bit(plan::Axis::kSceneGeometry));
-  const auto same = with_chest("scene other like room { fixture chest }\n"
-                               "task t like red_on_tray { scene room }\nvariant v of t { scene other }");
+  const auto same = with_chest(
+      "scene other like room { fixture chest }\n"
+      "task t like red_on_tray { scene room }\nvariant v of t { scene other }");
   CHECK(same->codes() == "P0702");
 }
 
 TEST_CASE("in a solution a joint stands for the part that it moves, as in measures") {
   const auto a = with_chest(
       "metrics pulled { success = at end travel(chest.slide) > 10cm }\n"
-      "task t like red_on_tray { scene room; metrics pulled; solution { open chest.slide; close chest.drawer } }");
+      "task t like red_on_tray { scene room; metrics pulled; solution { open chest.slide; close "
+      "chest.drawer } }");
   CHECK_MESSAGE(a->codes() == "", a->said());
   const sema::Task& task = a->task("t");
   REQUIRE(task.solution.size() == 2);

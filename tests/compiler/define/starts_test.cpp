@@ -220,16 +220,17 @@ TEST_CASE("cells of a grid ascend even where no decimal holds them") {
 }
 
 TEST_CASE("a task with no object in its scene has one start") {
-  const auto a = analyze_with_suite(std::string(test::kChest) +
-                                    "metrics pulled { success = at end slide(target) > 10cm }\n"
-                                    "layout nothing { drop none; expect 1 episodes }\n"
-                                    "layout nobody like nothing {\n"
-                                    "  cells spots = grid 2 x 2 at (0cm, 0cm) spread (5cm, 5cm)\n"
-                                    "  place distractors in remaining spots; orient by rest\n"
-                                    "}\n"
-                                    "task open { scene room; layout nothing; metrics pulled; horizon 60 steps\n"
-                                    "            target chest.drawer; say \"open {the target}\" }\n"
-                                    "task open_again like open { layout nobody }");
+  const auto a = analyze_with_suite(
+      std::string(test::kChest) +
+      "metrics pulled { success = at end slide(target) > 10cm }\n"
+      "layout nothing { drop none; expect 1 episodes }\n"
+      "layout nobody like nothing {\n"
+      "  cells spots = grid 2 x 2 at (0cm, 0cm) spread (5cm, 5cm)\n"
+      "  place distractors in remaining spots; orient by rest\n"
+      "}\n"
+      "task open { scene room; layout nothing; metrics pulled; horizon 60 steps\n"
+      "            target chest.drawer; say \"open {the target}\" }\n"
+      "task open_again like open { layout nobody }");
   CHECK_MESSAGE(a->codes() == "", a->said());
   for (const char* name : {"open", "open_again"}) {
     REQUIRE(a->task(name).starts.size() == 1);

@@ -31,7 +31,8 @@ TEST_CASE("words may name a fixture with joints that the scene has") {
       std::string(test::kChest) +
       "fixture tall_chest like chest { at (0cm, -80cm, 85cm) }\n"
       "scene both like room { fixture chest, tall_chest }\n"
-      "task near like red_on_tray { scene both; say \"put {source} on {target} beside {the tall_chest}\" }\n"
+      "task near like red_on_tray { scene both; say \"put {source} on {target} beside {the "
+      "tall_chest}\" }\n"
       "variant other of near { say \"put {source} on {target} beside {the chest}\" }\n");
   CHECK_MESSAGE(a->codes() == "", a->said());
   CHECK(a->task("near").prompt == "put red block on tray beside the tall chest");
@@ -40,9 +41,9 @@ TEST_CASE("words may name a fixture with joints that the scene has") {
       std::string(test::kChest) +
       "task t like red_on_tray { say \"put {source} on {target} beside {the chest}\" }");
   CHECK(absent->codes() == "P0404");
-  CHECK_MESSAGE(absent->said().find("fixture `chest` is not in the scene of `t`") !=
-                    std::string::npos,
-                absent->said());
+  CHECK_MESSAGE(
+      absent->said().find("fixture `chest` is not in the scene of `t`") != std::string::npos,
+      absent->said());
   CHECK(test::analyze_with_suite(std::string(test::kChest) +
                                  "template a \"put {source} beside {the chest: dish}\"")
             ->codes()

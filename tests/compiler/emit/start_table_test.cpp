@@ -194,13 +194,13 @@ TEST_CASE("joints of fixtures and of the robot begin where a table says, start b
 }
 
 TEST_CASE("a fixture on a lower surface has a record of its own, and regions and parts of that") {
-  const plan::Plan plan = plan_with(
-      "start,object,x_m,y_m\n0,source,-0.15,-0.11\n",
-      "use \"suite/kitchen.probe\"\n"
-      "scene low like counter { surface 85cm area (-42cm, -26cm) .. (26cm, 30cm) }\n"
-      "metrics away { success = at end stowed(source, target) }\n"
-      "task u like carrot_in_the_drawer { metrics away }\n"
-      "variant t of u { scene low }\n");
+  const plan::Plan plan =
+      plan_with("start,object,x_m,y_m\n0,source,-0.15,-0.11\n",
+                "use \"suite/kitchen.probe\"\n"
+                "scene low like counter { surface 85cm area (-42cm, -26cm) .. (26cm, 30cm) }\n"
+                "metrics away { success = at end stowed(source, target) }\n"
+                "task u like carrot_in_the_drawer { metrics away }\n"
+                "variant t of u { scene low }\n");
   const auto cabinet_of = [&](const char* name) -> const plan::FixtureRecord& {
     const plan::TaskRecord& task = plan.tasks()[plan.find_task(name).value()];
     const auto& scene = plan.scenes()[task.scene];
@@ -212,8 +212,7 @@ TEST_CASE("a fixture on a lower surface has a record of its own, and regions and
   CHECK(cabinet_of("u").position[2] == 0.9);
   CHECK(cabinet_of("t").position[2] == doctest::Approx(0.85));
   CHECK(cabinet_of("t").parts.first != cabinet_of("u").parts.first);
-  CHECK(plan.tasks()[plan.find_task("t").value()].axes ==
-        plan::bit(plan::Axis::kSceneGeometry));
+  CHECK(plan.tasks()[plan.find_task("t").value()].axes == plan::bit(plan::Axis::kSceneGeometry));
 }
 
 TEST_CASE("a task whose table says other joints moves that axis alone") {

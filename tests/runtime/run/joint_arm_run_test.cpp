@@ -110,7 +110,8 @@ TEST_CASE("what an arm was told by its joints is stored, proven, repeated and se
   }
 }
 
-TEST_CASE("null and digest are served to an arm that is told steps, and refused one told positions") {
+TEST_CASE(
+    "null and digest are served to an arm that is told steps, and refused one told positions") {
   const auto of_task = [](const char* name) {
     const std::uint32_t task[] = {example().find_task(name).value()};
     const auto actions = only_actions(example(), task, options_for("").assets);
@@ -127,8 +128,8 @@ TEST_CASE("null and digest are served to an arm that is told steps, and refused 
     served.policy = (is_null ? servers::serve_null(steps) : servers::serve_digest(steps)).value();
     const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
     REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
-    must_run(example(), two_of("stepped_carrot_on_plate", folder / "asked",
-                               address_of(**listener, served)));
+    must_run(example(),
+             two_of("stepped_carrot_on_plate", folder / "asked", address_of(**listener, served)));
     const auto rows = read_results(folder / "asked");
     REQUIRE(rows.ok());
     REQUIRE(rows->size() == 2);

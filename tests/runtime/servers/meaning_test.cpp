@@ -135,10 +135,11 @@ TEST_CASE("a law without a target of its own takes changes alone, and says so be
 TEST_CASE("a gripper's number that is an opening is none where the law wants a step, nor back") {
   using robot::ControlKind;
   const auto takes = [](const char* gripper, const char* threshold, ControlKind control) {
-    auto profile = parse_profile(std::string("protocol = openpi\nimage = first -> image\naction.form = delta\n"
-                                             "action.gripper = ") +
-                                     gripper + "\naction.threshold = " + threshold + "\n",
-                                 "mine");
+    auto profile =
+        parse_profile(std::string("protocol = openpi\nimage = first -> image\naction.form = delta\n"
+                                  "action.gripper = ") +
+                          gripper + "\naction.threshold = " + threshold + "\n",
+                      "mine");
     REQUIRE_MESSAGE(profile.ok(), to_text(profile.failure()));
     return check_form(*profile, ActionForm::kDelta, control, "server");
   };
