@@ -36,7 +36,7 @@ class Gpu {
 class SlowPolicy final : public servers::ServedPolicy {
  public:
   SlowPolicy(std::shared_ptr<Gpu> gpu, std::chrono::milliseconds answer_time)
-      : gpu_(std::move(gpu)), answer_time_(answer_time), still_(servers::serve_null()()) {}
+      : gpu_(std::move(gpu)), answer_time_(answer_time), still_(servers::serve_null().value()()) {}
 
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {

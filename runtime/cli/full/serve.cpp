@@ -1,6 +1,7 @@
 // vlaprobe serve
 #include <fmt/format.h>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/until_ended.h"
@@ -83,7 +84,8 @@ Result<servers::ServedActions> actions_asked(const ServeArguments& arguments, in
   for (const run::EpisodeJob& job : selection.jobs) {
     if (tasks.empty() || tasks.back() != job.task) tasks.push_back(job.task);
   }
-  return run::only_actions(*loaded.plan, tasks, options.assets);
+  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  return run::only_actions(*loaded.plan, tasks, root);
 }
 
 int serve_verb(const ServeArguments& arguments) {

@@ -13,7 +13,8 @@ using namespace probe::sema;
 TEST_CASE("a part fills all that its joint lets it reach, in steps of two millimetres") {
   const auto a = test::analyze_with_suite(test::kChest);
   REQUIRE_MESSAGE(a->codes().empty(), a->said());
-  const auto travel = Travel::of(*a->model.fixtures.begin(), test::asset_root());
+  const auto travel =
+      Travel::of(*a->model.scenes.begin(), *a->model.fixtures.begin(), test::asset_root());
   REQUIRE(travel);
   // The drawer's box of 10 cm slides by 20 cm along the world's y, for the chest is turned by 90
   // degrees.
@@ -56,7 +57,8 @@ TEST_CASE("what many joints carry is looked at in so many places, however many j
       "fixture chain { urdf \"chain/chain.urdf\"; at (0cm, 30cm, 85cm) }\n"
       "scene room like bench { fixture chain }\n");
   REQUIRE_MESSAGE(a->codes().empty(), a->said());
-  const auto travel = Travel::of(*a->model.fixtures.begin(), test::asset_root());
+  const auto travel =
+      Travel::of(*a->model.scenes.begin(), *a->model.fixtures.begin(), test::asset_root());
   REQUIRE(travel);
   CHECK(travel->carriers(25).size() == 26);
   CHECK(travel->everywhere().size() < 26 * (2048 + 26 * 3));
