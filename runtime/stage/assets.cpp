@@ -387,6 +387,25 @@ std::span<const LoadedFixture* const> SharedAssets::fixtures(std::uint32_t scene
   return found->second;
 }
 
+bool serves_both(const plan::Plan& a, const plan::Plan& b) {
+  const auto is_starts_or_sources = [](plan::Section section) {
+    return section == plan::Section::kEpisodes || section == plan::Section::kPlacements ||
+           section == plan::Section::kSpans || section == plan::Section::kTexts ||
+           section == plan::Section::kTextBytes;
+  };
+  const auto same = [](const auto& one, const auto& other) {
+    return one.size() == other.size() &&
+           std::equal(std::as_bytes(std::span(one)).begin(), std::as_bytes(std::span(one)).end(),
+                      std::as_bytes(std::span(other)).begin());
+  };
+#define PROBE_SECTION(kind, name, tag, Record, member, may_be_ignored)  \
+  if (!is_starts_or_sources(plan::Section::k##name) &&                  \
+      !same(a.tables().member, b.tables().member))                      \
+    return false;
+#include "runtime/plan/sections.def"
+  return true;
+}
+
 Sha256 asset_digest(const plan::Plan& plan) {
   Hasher hasher;
   for (const plan::AssetRecord& asset : plan.assets()) {

@@ -92,6 +92,10 @@ class SharedAssets {
   std::map<std::uint32_t, std::vector<const LoadedFixture*>> by_scene_;
 };
 
+// Whether what was loaded for a task of one plan is what the same task of the other needs: they
+// differ in nothing but where things start, in sources and in where in these something stands.
+bool serves_both(const plan::Plan& a, const plan::Plan& b);
+
 // Of every file the plan names, by path and content: equal digests, equal inputs.
 Sha256 asset_digest(const plan::Plan& plan);
 

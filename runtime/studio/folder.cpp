@@ -98,6 +98,18 @@ Status Folder::save(const std::string& path, const std::string& text, bool over)
   return {};
 }
 
+std::string Folder::table_name(int number) const {
+  return fs::path(file_).stem().string() + "_kept_" + std::to_string(number) + ".csv";
+}
+
+Result<int> Folder::keep_table(const std::string& table) {
+  const std::lock_guard lock(mutex_);
+  int number = 1;
+  while (is_there(root_ + "/" + table_name(number))) ++number;
+  PROBE_TRY(write_file(root_ + "/" + table_name(number), std::as_bytes(std::span(table))));
+  return number;
+}
+
 Folder::News Folder::news(const std::string& path) {
   const std::lock_guard lock(mutex_);
   const auto known = known_.find(path);

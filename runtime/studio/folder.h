@@ -1,5 +1,5 @@
 // The texts of the one folder that a studio was started for. Nothing outside it is read for the
-// page, and nothing in it is written but texts.
+// page, and nothing in it is written but texts and new tables of starts.
 #pragma once
 
 #include <map>
@@ -38,6 +38,12 @@ class Folder {
   // Fails (kUsage) as open() does, and where the disk has something else than was opened or saved
   // last, unless `over` says that this is known.
   Status save(const std::string& path, const std::string& text, bool over);
+
+  // Writes a table of starts beside the text, under the first name of TEXT_kept_1.csv, _2, ... that
+  // nothing has. Returns the number.
+  Result<int> keep_table(const std::string& table);
+  // "my_kept_1.csv".
+  std::string table_name(int number) const;
 
   // Texts that are otherwise on the disk than they were opened or saved.
   enum class News { kNone, kChanged, kGone };

@@ -61,6 +61,7 @@ class LiveEar final : public wire::Ear {
     if (what == "play") return play(json);
     if (what == "stop") return player_.stop();
     if (what == "look") return player_.look(static_cast<int>(count(json, "step")));
+    if (what == "keep") return keep(static_cast<int>(count(json, "step")));
     if (what == "why") return player_.why(json.value("metric", ""));
     say({{"kind", "refused"}, {"message", "there is no `" + what + "`"}});
   }
@@ -134,6 +135,22 @@ class LiveEar final : public wire::Ear {
       return say({{"kind", "stopped"}, {"message", "the text has to check before it is played"}});
     player_.play(std::move(shown), {json.value("task", ""), json.value("policy", "expert"),
                                     count(json, "start"), static_cast<int>(count(json, "seed"))});
+  }
+
+  // A start of its own, with the lines that use it, which the editor adds.
+  void keep(int step) {
+    const auto start = player_.start_at(step);
+    if (!start)
+      return say({{"kind", "refused"}, {"message", "there is no episode with such a step"}});
+    const auto number = folder_.keep_table(start->table);
+    if (!number) return say(refused(number.failure()));
+    const std::string kept = "kept_" + std::to_string(*number);
+    say({{"kind", "kept"},
+         {"table", folder_.table_name(*number)},
+         {"task", start->task + "_" + kept},
+         {"lines", "layout " + kept + " { starts \"" + folder_.table_name(*number) +
+                       "\"; drop none }\ntask " + start->task + "_" + kept + " like " +
+                       start->task + " { layout " + kept + " }\n"}});
   }
 
   Folder& folder_;

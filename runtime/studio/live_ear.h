@@ -26,7 +26,7 @@ class Seat {
 };
 
 // do: hello, take, open {path}, save {path, text, over}, news {paths}, show {id, texts, task, start},
-// play {task, start, policy, seed}, stop, look {step}, why {metric}.
+// play {task, start, policy, seed}, stop, look {step}, keep {step}, why {metric}.
 std::unique_ptr<wire::Ear> make_live_ear(Folder& folder, Seat& seat, const Setting& setting,
                                          std::shared_ptr<wire::Mouth> mouth);
 

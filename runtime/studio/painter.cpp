@@ -137,15 +137,21 @@ Status Painter::draw(const Wish& wish, std::uint32_t task) {
     return Failure{Fault::kUsage, "the task has no starts", ""};
   const std::uint32_t start = wish.start < plan.tasks()[task].episodes.count ? wish.start : 0;
   if (loaded_ == nullptr || loaded_->shown != shown_ || loaded_->task != task) {
-    loaded_.reset();  // frees the old before the new is made
-    const std::uint32_t tasks[] = {task};
-    PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, shown_->asset_root, tasks));
     auto loaded = std::make_unique<Loaded>();
     loaded->shown = shown_;
     loaded->task = task;
-    PROBE_ASSIGN(loaded->small,
-                 stage::Stage::create(plan, task, assets, {.image = small_size(plan, task)}));
-    PROBE_ASSIGN(loaded->full, stage::Stage::create(plan, task, assets));
+    // Who moves a thing or writes a comment waits for no file and no mesh.
+    if (loaded_ != nullptr && loaded_->task == task &&
+        stage::serves_both(loaded_->shown->plan, plan))
+      loaded->assets = loaded_->assets;
+    loaded_.reset();  // frees the old before the new is made
+    if (loaded->assets == nullptr) {
+      const std::uint32_t tasks[] = {task};
+      PROBE_ASSIGN(loaded->assets, stage::SharedAssets::load(plan, shown_->asset_root, tasks));
+    }
+    PROBE_ASSIGN(loaded->small, stage::Stage::create(plan, task, loaded->assets,
+                                                     {.image = small_size(plan, task)}));
+    PROBE_ASSIGN(loaded->full, stage::Stage::create(plan, task, loaded->assets));
     loaded_ = std::move(loaded);
   }
   if (stop_) return {};

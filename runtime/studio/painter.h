@@ -72,6 +72,7 @@ class Painter {
   struct Loaded {
     std::shared_ptr<const Shown> shown;  // outlives the stages
     std::uint32_t task = 0;
+    std::shared_ptr<const stage::SharedAssets> assets;
     std::unique_ptr<stage::Stage> small, full;
   };
   std::unique_ptr<Loaded> loaded_;

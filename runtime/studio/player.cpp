@@ -1,5 +1,6 @@
 #include "runtime/studio/player.h"
 
+#include <fmt/format.h>
 #include <stdlib.h>
 
 #include <chrono>
@@ -159,6 +160,34 @@ void Player::look(int step) {
   const auto seen = stage.observe();
   if (!seen) return say({{"kind", "stopped"}, {"message", to_text(seen.failure())}});
   tell_(picture_message({{"kind", "moment"}, {"step", step}}, stage.frames()));
+}
+
+std::optional<Player::Start> Player::start_at(int step) {
+  const std::lock_guard lock(mutex_);
+  if (episode_ == nullptr || step < 0 ||
+      static_cast<std::size_t>(step) >= episode_->states.size())
+    return std::nullopt;
+  stage::Stage& stage = *episode_->stage;
+  if (!stage.restore(episode_->states[static_cast<std::size_t>(step)])) return std::nullopt;
+  const plan::Plan& plan = episode_->shown->plan;
+  const plan::TaskRecord& task = plan.tasks()[episode_->task];
+  const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
+  std::string table = "start,object,x_m,y_m,z_m,qw,qx,qy,qz,value\n";
+  const auto objects = stage.objects();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Vec3& at = objects[i].position;
+    const Quat turn = objects[i].rotation.normalized();
+    table += fmt::format("0,{},{},{},{},{},{},{},{},\n", plan.text(plan.bodies(task)[i].name),
+                         at.x(), at.y(), at.z(), turn.w(), turn.x(), turn.y(), turn.z());
+  }
+  const std::vector<std::string> names = stage.joint_names();
+  const auto q = stage.q();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool is_robots = i < plan.drives(robot).size();
+    table += fmt::format("0,{}{}{},,,,,,,,{}\n", is_robots ? plan.text(robot.name) : "",
+                         is_robots ? "." : "", names[i], q[i]);
+  }
+  return Start{std::string(plan.text(task.name)), std::move(table)};
 }
 
 void Player::why(const std::string& metric) {

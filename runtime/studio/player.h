@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -47,6 +48,12 @@ class Player {
   // The episode after `step` steps, drawn again from its state. Nothing where it has none.
   void look(int step);
   void why(const std::string& metric);
+  // A table of one start (dsl/reference.md) that begins as the episode is after `step` steps, and
+  // the task that it was of. Nothing where there is none.
+  struct Start {
+    std::string task, table;
+  };
+  std::optional<Start> start_at(int step);
 
  private:
   class Watcher;

@@ -104,6 +104,16 @@ TEST_CASE("a file that was deleted while it is open is told and written again wh
   CHECK(place.read("in/a.probe") == "again\n");
 }
 
+TEST_CASE("a table of starts takes a name that nothing has") {
+  const Place place;
+  auto folder = Folder::of(place.path("in/a.probe"));
+  REQUIRE(folder);
+  place.write("in/a_kept_1.csv", "another's");
+  CHECK((*folder)->keep_table("ours").value() == 2);
+  CHECK(place.read("in/a_kept_1.csv") == "another's");
+  CHECK(place.read("in/a_kept_2.csv") == "ours");
+}
+
 TEST_CASE("what an editor would alter or is too large is refused by name") {
   const Place place;
   auto folder = Folder::of(place.path("in/a.probe"));

@@ -239,6 +239,16 @@ TEST_CASE("an episode is watched, looked at again and explained") {
   const Heard moment = hear(*live, "moment");
   CHECK(moment.json["step"] == 3);
   CHECK(moment.pixels == 640u * 480u * 4u);
+  // A step becomes a table that checks, and its first picture is that step's.
+  say(*live, {{"do", "keep"}, {"step", 99999}});
+  CHECK(hear(*live, "refused").json["message"] == "there is no episode with such a step");
+  say(*live, {{"do", "keep"}, {"step", 3}});
+  const Json kept = hear(*live, "kept").json;
+  CHECK(kept["table"] == "my_kept_1.csv");
+  Json texts = Json::object();
+  texts[page.path("my.probe")] = kText + kept["lines"].text();
+  say(*live, {{"do", "show"}, {"id", 9}, {"texts", texts}, {"task", kept["task"]}, {"start", 0}});
+  CHECK(hear(*live, "picture").json["task"] == "own_kept_1");
   say(*live, {{"do", "why"}, {"metric", "success"}});
   const Json why = hear(*live, "why").json;
   REQUIRE(why["metrics"].size() == 1);

@@ -78,6 +78,8 @@ class Studio {
         this.settle(message.path, text);
         return this.drawTabs();
       }
+      case "kept":
+        return this.kept(message);
       case "saved":
         return this.saved(message.path);
       case "news":
@@ -269,6 +271,21 @@ class Studio {
     } catch (error) {
       this.notice("move", (error as Error).message);
     }
+  }
+
+  // A step of an episode has become a table; the lines that use it stand behind the text.
+  private kept(message: Message): void {
+    const text = [...this.texts.all.values()][0]!;
+    this.turn(text.model);
+    const model = text.model, last = model.getLineCount();
+    const end = new monaco.Range(last, model.getLineMaxColumn(last), last, model.getLineMaxColumn(last));
+    this.editor!.pushUndoStop();
+    this.editor!.executeEdits("keep", [{ range: end, text: (model.getLineMaxColumn(last) > 1 ? "\n" : "") + message.lines }]);
+    this.editor!.pushUndoStop();
+    this.editor!.setPosition({ lineNumber: model.getLineCount() - 1, column: 1 });
+    this.editor!.revealLine(model.getLineCount());
+    this.editor!.focus();
+    this.notice("kept", `Kept as ${message.table}; the task ${message.task} begins there.`);
   }
 
   private command(name: string, task: string): void {

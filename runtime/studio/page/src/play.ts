@@ -22,6 +22,7 @@ export class Play {
   private readonly run = h("button", { type: "button", class: "primary", click: () => this.begin(), title: "Ctrl+Enter" }, "Run");
   private readonly halt = h("button", { type: "button", disabled: true, click: () => this.host.say({ do: "stop" }) }, "Stop");
   private readonly scrub = h("input", { type: "range", min: 0, max: 0, value: 0, disabled: true, "aria-label": "Step of the episode", input: () => this.look(Number(this.scrub.value)) });
+  private readonly keep = h("button", { type: "button", disabled: true, title: "A start that begins as this step is", click: () => this.host.say({ do: "keep", step: Number(this.scrub.value) }) }, "Keep as a start");
   private readonly where = h("span", { class: "where", "aria-live": "off" });
   private readonly verdict = h("span", { class: "verdict", role: "status" });
   private readonly lights = h("div", { class: "lights", role: "group", "aria-label": "Verdicts; each says why" });
@@ -35,7 +36,7 @@ export class Play {
 
   constructor(private readonly host: PlayHost) {
     this.element = h("section", { class: "play", "aria-label": "Episode" },
-      h("div", { class: "bar" }, h("label", {}, "policy ", this.policy), this.policies, h("label", {}, "seed ", this.seed), this.run, this.halt, this.scrub, this.where, this.verdict),
+      h("div", { class: "bar" }, h("label", {}, "policy ", this.policy), this.policies, h("label", {}, "seed ", this.seed), this.run, this.halt, this.scrub, this.where, this.keep, this.verdict),
       h("div", { class: "watched" }, this.pictures.element, h("div", { class: "judged" }, this.lights, this.timeline.element), this.reasons));
     replace(this.reasons, h("p", { class: "note" }, "Run an episode; click on a verdict for its reasons."));
   }
@@ -92,7 +93,7 @@ export class Play {
         this.metrics = message.metrics;
         this.values = [];
         this.scrub.max = String(message.horizon);
-        this.scrub.disabled = true;
+        this.scrub.disabled = this.keep.disabled = true;
         this.halt.disabled = false;
         this.element.dataset.state = "playing";
         replace(this.lights, this.metrics.map((metric) => h("button", { type: "button", class: metric.truth ? "light truth" : "light", click: () => this.host.say({ do: "why", metric: metric.name }) }, h("span", { class: "lamp", "aria-hidden": "true" }), h("span", {}, metric.name), " ", h("span", { class: "value" }, ""))));
@@ -108,13 +109,13 @@ export class Play {
         this.values[message.steps] = message.values;
         this.scrub.max = String(message.steps);
         this.scrub.value = String(message.steps);
-        this.scrub.disabled = this.halt.disabled = false;
+        this.scrub.disabled = this.keep.disabled = false;
         this.halt.disabled = true;
         this.at(message.steps);
         const success = this.metrics.findIndex((metric) => metric.name === "success");
         if (message.invalid) this.tell(message.invalid, "bad");
         else if (success < 0) this.tell(`judged after ${message.steps} steps`);
-        else this.tell(message.values[success] ? `success in ${message.steps} steps` : `no success in ${message.steps} steps${message.remark ? `: ${message.remark}` : ""}`, message.values[success] ? "good" : "bad");
+        else this.tell(message.values[success] ? `success after ${message.steps} steps` : `no success after ${message.steps} steps${message.remark ? `: ${message.remark}` : ""}`, message.values[success] ? "good" : "bad");
         this.element.dataset.state = "played";
         return true;
       }

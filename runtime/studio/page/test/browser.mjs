@@ -105,7 +105,7 @@ async function author() {
   // An episode, watched, judged, looked at again, explained; saved.
   await chord(page, "Control", "Enter");
   await until(page, () => document.querySelector(".play").dataset.state === "played", "the expert's episode ends");
-  expect(/^success in \d+ steps/.test((await words(page)).verdict), `the expert's verdict is: ${(await words(page)).verdict}`);
+  expect(/^success after \d+ steps/.test((await words(page)).verdict), `the expert's verdict is: ${(await words(page)).verdict}`);
   await page.focus(".play input[type=range]");
   await page.keyboard.press("Home");
   await until(page, () => document.querySelector(".play").dataset.step === "0", "the first step is looked at again");
@@ -115,6 +115,12 @@ async function author() {
   await page.keyboard.press("Enter");
   await until(page, () => document.querySelector(".play").dataset.why === "success" && document.querySelector(".reasons li.decides"), "success is explained");
   await page.screenshot({ path: join(out, "author-judged.png") });
+  // A step as a start of its own, which undo takes out of the text again.
+  await newPicture(page, () => page.evaluate(() => [...document.querySelectorAll(".play button")].find((b) => /Keep/.test(b.textContent)).click()));
+  await until(page, () => / full own_kept_1 0/.test(document.documentElement.dataset.shown ?? ""), "the kept start is shown");
+  expect(/it checks/.test((await words(page)).state), `with the kept start the page says ${(await words(page)).state}`);
+  await page.screenshot({ path: join(out, "author-kept.png") });
+  await newPicture(page, () => chord(page, "Control", "z"));
   await chord(page, "Control", "s");
   await until(page, () => document.documentElement.dataset.unsaved === "false", "it is saved");
   expect(studio.read() === kText.replace("(-20cm, -8cm)", "(-19cm, -8cm)"), `saved is\n${studio.read()}`);
