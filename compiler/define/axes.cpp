@@ -177,7 +177,7 @@ bool same_scene(const Model& model, const Scene& a, const Scene& b) {
          a.base_turn == b.base_turn && joints(a) == joints(b) && a.area == b.area &&
          text_of(a.fixture) == text_of(b.fixture) &&
          stands_alike(a.fixture_position, a.surface_z, b.fixture_position, b.surface_z) &&
-         text_of(a.backdrop) == text_of(b.backdrop) &&
+         text_of(a.backdrop) == text_of(b.backdrop) && a.backdrop_stands == b.backdrop_stands &&
          text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
          a.friction == b.friction && a.air_density == b.air_density &&
          a.air_viscosity == b.air_viscosity && same_fixtures(model, a, b);
@@ -208,7 +208,8 @@ bool is_same_body(const Object& a, const Object& b) {
       (a.texture && !a.texture->is_same(*b.texture)))
     return false;
   return a.mesh.text == b.mesh.text && a.box_min == b.box_min && a.box_max == b.box_max &&
-         a.density == b.density && a.mass == b.mass && a.friction == b.friction;
+         a.density == b.density && a.mass == b.mass && a.damping == b.damping &&
+         a.friction == b.friction;
 }
 
 // The same roles are filled, each by as many objects.

@@ -126,6 +126,28 @@ struct ObjectReader {
     if (const auto wrong = plan::inertia_fault(spread.inertia))
       context.report(Situation::kInertia, stmt.inertia->span, *wrong);
   }
+  // Alone it may be either, as its unit says; of two the first is of shifts.
+  void operator()(const syntax::ObjectDampingStmt& stmt) {
+    object.damping = {};
+    const auto unit = make_quantity("0", to_text(stmt.shift.unit));
+    const bool turns = !stmt.turn && unit && unit->dimension == dim::kAngularDamping;
+    const auto read = [&](const syntax::Quantity& written, bool is_turn, double& to) {
+      const auto value =
+          is_turn ? read_si(context, written, dim::kAngularDamping,
+                            {"`damping` of turning is in Nms/rad", plan::Magnitude::kGain})
+                  : read_si(context, written, dim::kLinearDamping,
+                            {"`damping` of moving is in Ns/m, and of turning, behind it, in Nms/rad",
+                             plan::Magnitude::kGain});
+      if (!value) return;
+      if (*value >= 0) {
+        to = *value;
+        return;
+      }
+      context.report(Situation::kNegative, written.span, "a damping is not negative");
+    };
+    read(stmt.shift, turns, turns ? object.damping.turn : object.damping.shift);
+    if (stmt.turn) read(*stmt.turn, true, object.damping.turn);
+  }
   void operator()(const syntax::DensityStmt& stmt) {
     begin_weight(stmt.span);
     object.density = read_positive(context, stmt.value, dim::kDensity,

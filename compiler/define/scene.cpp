@@ -117,6 +117,7 @@ struct SceneReader {
   void operator()(const syntax::BackdropStmt& stmt) {
     has_backdrop = true;
     scene.backdrop = spelled(stmt.mesh);
+    scene.backdrop_stands = stmt.stands;
   }
   void operator()(const syntax::TextureStmt& stmt) {
     constexpr double kSide = 0.5;  // m

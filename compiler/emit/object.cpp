@@ -40,6 +40,11 @@ void Emitter::add_object(ObjectId id) {
     }
     record.mass = plan::append(records().masses, std::span<const plan::MassRecord>(&mass, 1));
   }
+  if (object.damping != sema::Damping{}) {
+    const plan::DampingRecord damping{object.damping.shift, object.damping.turn};
+    record.damping =
+        plan::append(records().dampings, std::span<const plan::DampingRecord>(&damping, 1));
+  }
   record.friction = object.friction;
   if (object.scale != 1) record.scale = object.scale;
   if (object.paint) {

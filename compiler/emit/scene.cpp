@@ -59,6 +59,8 @@ void Emitter::add_scene(sema::SceneId id) {
     }
     if (!has_photo || assets_.has(visual)) {
       record.backdrop = assets_.add(visual, plan::AssetKind::kVisualMesh, span, owner);
+      record.backdrop_stands = scene.backdrop_stands ? 1 : 0;
+      if (scene.backdrop_stands) record.backdrop_z = scene.backdrop_z;
     }
   }
   if (scene.fixture) {

@@ -163,6 +163,7 @@ class Walker {
   void operator()(const BoxCornersStmt&) {}
   void operator()(const DensityStmt&) {}
   void operator()(const MassStmt&) {}
+  void operator()(const ObjectDampingStmt&) {}
   void operator()(const FrictionStmt&) {}
   void operator()(const ScaleStmt&) {}
   void operator()(const PaintStmt&) {}

@@ -128,6 +128,13 @@ struct Mass {
   bool operator==(const Mass&) const = default;
 };
 
+// What resists a thing wherever it is, in proportion to how fast it goes and turns.
+struct Damping {
+  double shift = 0;  // N s/m
+  double turn = 0;   // N m s/rad
+  bool operator==(const Damping&) const = default;
+};
+
 struct Object {
   std::string name;
   bool broken = false;  // something was reported: what follows from that is not said
@@ -151,6 +158,7 @@ struct Object {
   bool box_is_read = false;  // else something was wrong with it, and was reported
   double density = 0;        // 0 where `mass` is said
   std::optional<Mass> mass;  // with its scale
+  Damping damping;           // whatever its scale
   double friction = 0;
   std::vector<std::vector<std::uint32_t>> values;  // by attribute; empty: unknown
   std::vector<Truth> facts;                        // by fact
@@ -335,6 +343,7 @@ struct Scene {
   double fixtures_lift = 0;
   std::vector<Region> surface_regions, fixture_regions;  // about (0, 0, surface_z); in the mesh
   std::optional<Spelled> backdrop;
+  bool backdrop_stands = false;  // where its mesh has it, for a surface at backdrop_z
   std::map<plan::CoverOf, Cover> covers;  // on the backdrop
   std::vector<View> views;                // the first is what a policy with one picture sees
   LightId light = LightId::kNone;

@@ -361,6 +361,11 @@ struct MassStmt {  // `mass 0.2kg`, `mass 0.2kg com (..) inertia (xx, yy, zz, xy
   Quantity value;
   std::optional<Point> centre, inertia;  // both or neither
 };
+struct ObjectDampingStmt {  // `damping 0.1Ns/m`, `damping 0.1Ns/m 0.001Nms/rad`
+  Span span;
+  Quantity shift;                // or of its turn, where it is the only one
+  std::optional<Quantity> turn;
+};
 struct FrictionStmt {
   Span span;
   Quantity value;
@@ -426,9 +431,9 @@ struct RegionStmt {  // `region inside of top_drawer box (..) .. (..)`
   std::optional<Text> text;  // of a fixture's: in instructions
 };
 using ObjectStmt =
-    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, MassStmt, FrictionStmt,
-                 ScaleStmt, PaintStmt, TextureStmt, IsStmt, MaybeStmt, SeenInStmt, UnseenStmt, RestStmt,
-                 RegionStmt, NameStmt, PhraseStmt, AttributeStmt>;
+    std::variant<MeshStmt, BoxSizeStmt, BoxCornersStmt, DensityStmt, MassStmt,
+                 ObjectDampingStmt, FrictionStmt, ScaleStmt, PaintStmt, TextureStmt, IsStmt,
+                 MaybeStmt, SeenInStmt, UnseenStmt, RestStmt, RegionStmt, NameStmt, PhraseStmt, AttributeStmt>;
 struct ObjectDecl {
   Name name;
   std::optional<Name> like;
@@ -652,6 +657,7 @@ struct SceneFixturesStmt {  // `fixture cabinet, stove`: with joints
 struct BackdropStmt {  // a mesh that is seen and not touched
   Span span;
   Text mesh;
+  bool stands = false;  // where it has its table, the surface wherever it is
 };
 struct SceneCamera {  // `third_view as outside overlay "photo.png"`
   Name camera;

@@ -47,6 +47,13 @@ ObjectStmt Parser::object_mass() {
   return out;
 }
 
+ObjectStmt Parser::object_damping() {
+  ObjectDampingStmt out;
+  out.shift = quantity();
+  if (at(TokenKind::kNumber)) out.turn = quantity();
+  return out;
+}
+
 ObjectStmt Parser::object_friction() { return FrictionStmt{{}, quantity()}; }
 
 ObjectStmt Parser::object_scale() { return ScaleStmt{{}, quantity()}; }

@@ -49,7 +49,11 @@ SceneStmt Parser::scene_fixture() {
 
 SceneStmt Parser::scene_region() { return region(true); }
 
-SceneStmt Parser::scene_backdrop() { return BackdropStmt{{}, string()}; }
+SceneStmt Parser::scene_backdrop() {
+  BackdropStmt out{{}, string()};
+  out.stands = accept_word("stands");
+  return out;
+}
 
 SceneStmt Parser::scene_texture() { return texture(true); }
 

@@ -142,6 +142,7 @@ class Parser {
   ObjectStmt object_box();
   ObjectStmt object_density();
   ObjectStmt object_mass();
+  ObjectStmt object_damping();
   ObjectStmt object_friction();
   ObjectStmt object_scale();
   ObjectStmt object_paint();

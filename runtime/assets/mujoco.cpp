@@ -191,6 +191,7 @@ class Conversion {
     text.low = asset_.low;
     text.high = asset_.high;
     text.friction = asset_.friction;
+    text.damping = thing_.is_free ? thing_.free_damping : options_.free_damping;
     if (!(mass_.mass > 0)) return Failure{Fault::kAsset, "it weighs nothing", options_.file};
     text.density = mass_.mass / shape.volume;
     // What is as heavy everywhere is said by its density, all else as the file has it.

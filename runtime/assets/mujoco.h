@@ -37,6 +37,8 @@ struct MujocoOptions {
   std::string merged_into;  // the MJCF that the model is made a part of, robosuite's base.xml; or
                             // empty (mjcf/read.h)
   MujocoKind kind = MujocoKind::kEither;
+  // Of the free joint that code gives an object whose file has none: N s/m and N m s/rad.
+  double free_damping = 0;
   std::vector<MujocoChange> changes;
 };
 

@@ -164,6 +164,8 @@ std::string object_text(const ObjectText& object, const std::vector<MujocoSite>&
       object.mass ? mass_text(*object.mass) : "density " + decimals(object.density, 6) + "kg/m3";
   out += fmt::format("  {}; friction {}; name \"{}\"\n", weight, decimals(object.friction, 6),
                      object.called);
+  if (object.damping != 0)
+    out += fmt::format("  damping {0:.9g}Ns/m {0:.9g}Nms/rad\n", object.damping);
   for (const MujocoSite& site : sites) out += region(site, "");
   return out + "}\n";
 }

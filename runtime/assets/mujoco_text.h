@@ -31,6 +31,7 @@ struct ObjectText {
   double density = 0;  // kg/m3
   std::optional<mjcf::MassProperties> mass;  // in place of the density, in the thing's frame
   double friction = 1;
+  double damping = 0;  // N s/m and N m s/rad
 };
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites);
 

@@ -55,6 +55,7 @@ class Finder {
       if (joint.motion != Motion::kFree)
         return fail(model_, joint.at, "a joint that moves the thing itself");
       thing_.is_free = true;
+      thing_.free_damping = joint.damping;
     }
     thing_.links.emplace_back();
     PROBE_TRY(add(root, 0, Pose{}));

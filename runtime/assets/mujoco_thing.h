@@ -37,6 +37,7 @@ struct MujocoLink {
 struct MujocoThing {
   std::vector<MujocoLink> links;  // the root first
   bool is_free = false;           // a free joint is in the file
+  double free_damping = 0;        // N s/m and N m s/rad, of that joint
   bool is_wrapped = false;        // robosuite's form
   std::vector<const mjcf::Site*> outside;
   std::vector<const mjcf::Geom*> of_world;  // geoms of the world itself

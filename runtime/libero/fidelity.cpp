@@ -57,7 +57,9 @@ Result<std::vector<FidelityRow>> measure_fidelity(const FidelityOptions& options
   }
   if (records && records->has("libero_object_classes.json")) {
     PROBE_ASSIGN(rows.emplace_back(), masses_row(imported, *records));
+    PROBE_ASSIGN(rows.emplace_back(), rules_row(imported, *records));
   } else {
+    rows.push_back(not_measured("rules of success", "all equal", lacks("libero_object_classes.json")));
     rows.push_back(not_measured("masses, centres, inertias", "1e-6, relative",
                                 lacks("libero_object_classes.json")));
   }
@@ -79,8 +81,14 @@ Result<std::vector<FidelityRow>> measure_fidelity(const FidelityOptions& options
     rows.push_back(not_measured("things behind the ten waiting steps",
                                 "95 % within 2 mm and 2 degrees", lacks("libero_settled.npz")));
   }
+  if (records && has_files(*records, "_t0_geometry.npz")) {
+    PROBE_ASSIGN(rows.emplace_back(), masks_row(imported, *records));
+  } else {
+    rows.push_back(not_measured("masks of objects", "intersection over union 0.97",
+                                lacks("reference/*_t0_geometry.npz")));
+  }
   if (records && has_files(*records, "_t10_agentview.png")) {
-    PROBE_ASSIGN(rows.emplace_back(), pictures_row(imported, *records));
+    PROBE_ASSIGN(rows.emplace_back(), pictures_row(imported, *records, options.sheets));
   } else {
     rows.push_back(not_measured("pictures", "6 levels each, 3 in the median",
                                 lacks("reference/*_t10_agentview.png")));

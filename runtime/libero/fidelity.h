@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,7 @@ struct FidelityOptions {
   std::string original;  // LIBERO's own folder; empty: rows of its files are not measured
   std::string records;   // of the benchmark's own program; empty: rows of these are not measured
   int starts = 50;       // of a task: how many first ones come to rest
+  std::string sheets;    // folder for pictures: theirs, ours, what differs; empty: none
 };
 
 // The worse of two deviations: what is no number is worse than any, so that no bar holds it.
@@ -48,13 +50,23 @@ Result<FidelityRow> tasks_row(Imported& imported, const std::string& original,
 Result<FidelityRow> starts_row(Imported& imported, const std::string& original);
 // libero_object_classes.json: what MuJoCo's compiler made of each model.
 Result<FidelityRow> masses_row(Imported& imported, const Records& records);
+// Rules of success on stored, settled and made-up states (libero_object_classes.json).
+Result<FidelityRow> rules_row(Imported& imported, const Records& records);
 // reference/osc_unit_*.json: torques of given states.
 Result<FidelityRow> torques_row(Imported& imported, const Records& records);
 // reference/*_osc.csv: rows for the arm, the fingers and the joints of fixtures.
 Result<std::vector<FidelityRow>> steps_rows(Imported& imported, const Records& records);
 // libero_settled.npz.
 Result<FidelityRow> settling_row(Imported& imported, const Records& records, std::size_t starts);
-// reference/*_t10_agentview.png and _wrist.png: the first pictures that a policy gets.
-Result<FidelityRow> pictures_row(Imported& imported, const Records& records);
+// What a task's cameras see of its first start as it is stored, before the waiting steps; valid
+// until the stage draws again.
+Result<std::span<const stage::CameraFrame>> first_frames(const plan::Plan& plan,
+                                                         stage::Stage& stage);
+// reference/*_t0_geometry.npz: which geom each pixel shows before the waiting steps.
+Result<FidelityRow> masks_row(Imported& imported, const Records& records);
+// reference/*_t10_agentview.png and _wrist.png: the first pictures that a policy gets. With
+// `sheets` a PNG each there: theirs, ours, and four times what differs.
+Result<FidelityRow> pictures_row(Imported& imported, const Records& records,
+                                 const std::string& sheets);
 
 }  // namespace probe::libero

@@ -340,6 +340,8 @@ class LiberoImport {
       options.file = model->string();
       options.name = category;
       options.merged_into = base_;
+      // robosuite's MujocoXMLObject gives what moves a free joint with this damping.
+      if (!stands) options.free_damping = 0.0005;
       options.kind = stands ? assets::MujocoKind::kFixture : assets::MujocoKind::kObject;
       const auto made = assets::convert_mujoco(options);
       if (!made) {
@@ -600,7 +602,7 @@ class LiberoImport {
     if (!rooms_.empty()) text += "\n# ---- rooms ----\n";
     for (const std::string& scene : rooms_)
       text +=
-          fmt::format("scene {} like {} {{ backdrop \"{}\" }}\n", with_room(scene), scene, scene);
+          fmt::format("scene {} like {} {{ backdrop \"{}\" stands }}\n", with_room(scene), scene, scene);
     text += "\n# ---- as tasks call them ----\n";
     for (const auto& [name, category] : instances_) {
       if (things_.contains(category))

@@ -87,8 +87,8 @@ struct ObjectRecord {
   Slice cover;                          // kCovers: a texture on all of it, or none
   std::array<std::uint8_t, 4> paint{};  // sRGB and 1 where it is painted, else 0
   std::uint32_t zero = 0;
-  Slice mass;  // kMasses: its own, or none
-  std::uint64_t zero2[1] = {};
+  Slice mass;     // kMasses: its own, or none
+  Slice damping;  // kDampings: its own, or none
 };
 static_assert(sizeof(ObjectRecord) == 128);
 
@@ -100,6 +100,13 @@ struct MassRecord {
                                     // spread evenly over what is felt, and there is no centre
 };
 static_assert(sizeof(MassRecord) == 80);
+
+// What resists an object everywhere, at its centre of mass.
+struct DampingRecord {
+  double shift = 0;  // N s/m
+  double turn = 0;   // N m s/rad
+};
+static_assert(sizeof(DampingRecord) == 16);
 
 enum class Control : std::uint32_t {
   kEeDeltaPose = 1,
@@ -250,7 +257,8 @@ struct SceneRecord {
       kNone;  // kAssets: static visual mesh in world coordinates, without collision
   std::uint32_t fixture_visual = kNone;     // kAssets
   std::uint32_t fixture_collision = kNone;  // kAssets; a static body
-  std::uint32_t zero = 0;
+  std::uint32_t backdrop_stands = 0;        // 1: as its mesh has it where the surface is at
+                                            // `backdrop_z`; 0: its table lies at the surface
   std::array<double, 3> fixture_position{};
   std::array<double, 3> base_position{};
   std::array<double, 4> base_rotation{};
@@ -263,7 +271,8 @@ struct SceneRecord {
   double air_density = 0;    // kg/m3: felt by robots whose law gives efforts
   double air_viscosity = 0;  // Pa s
   Slice covers;              // kCovers: other pictures on its backdrop, ascending by `what`
-  std::uint64_t zero2[6] = {};
+  double backdrop_z = 0;     // m; 0 where the backdrop does not stand
+  std::uint64_t zero2[5] = {};
 };
 static_assert(sizeof(SceneRecord) == 256);
 

@@ -119,6 +119,10 @@ Sha256 IdHasher::object(std::uint32_t index) {
     const MassRecord& mass = tables_.masses[o.mass.first];
     h.text("mass").f64(mass.mass).f64s(mass.centre).f64s(mass.inertia);
   }
+  if (o.damping.count != 0) {
+    const DampingRecord& damping = tables_.dampings[o.damping.first];
+    h.text("damping").f64(damping.shift).f64(damping.turn);
+  }
   known = h.finish();
   return *known;
 }
@@ -186,6 +190,7 @@ void IdHasher::hash_surroundings(Hasher& h, const SceneRecord& s) const {
   if (s.air_density != 0 || s.air_viscosity != 0)
     h.text("air").f64(s.air_density).f64(s.air_viscosity);
   if (s.covers.count != 0) hash_covers(h, s.covers);
+  if (s.backdrop_stands != 0) h.text("stands").f64(s.backdrop_z);
 }
 
 Sha256 IdHasher::scene(std::uint32_t index) {

@@ -65,6 +65,10 @@ class Plan {
   const MassRecord* mass(const ObjectRecord& object) const {
     return object.mass.count == 0 ? nullptr : &tables_.masses[object.mass.first];
   }
+  // Null: none of its own.
+  const DampingRecord* damping(const ObjectRecord& object) const {
+    return object.damping.count == 0 ? nullptr : &tables_.dampings[object.damping.first];
+  }
   // By joint; empty: none has any.
   std::span<const double> armatures(const FixtureRecord& fixture) const {
     return slice_of(tables_.reals, fixture.armatures);

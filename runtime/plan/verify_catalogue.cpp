@@ -74,8 +74,18 @@ Status RecordCheck::check(const ObjectRecord& o) const {
   if (o.paint[3] > 1 || (o.paint[3] == 0 && o.paint != std::array<std::uint8_t, 4>{}))
     return fail(Rule::kPaint, &o.paint, "an object is painted (1) or not (0, and no colour)");
   PROBE_TRY(check_slice(o.cover, t.covers.size(), "COVR"));
-  PROBE_TRY(check_zero(o.zero));
-  return check_zero(o.zero2);
+  PROBE_TRY(check_slice(o.damping, t.dampings.size(), "DAMP"));
+  return check_zero(o.zero);
+}
+
+Status RecordCheck::check(const DampingRecord& d) const {
+  for (const double& value : {std::cref(d.shift), std::cref(d.turn)}) {
+    PROBE_TRY(check_not_negative(value, "a damping"));
+    PROBE_TRY(check_magnitude(value, Magnitude::kGain));
+  }
+  if (d.shift == 0 && d.turn == 0)
+    return fail(Rule::kDamping, &d, "a damping resists nothing");
+  return {};
 }
 
 Status RecordCheck::check(const MassRecord& m) const {
@@ -274,7 +284,11 @@ Status RecordCheck::check(const SceneRecord& s) const {
   PROBE_TRY(check_asset(s.backdrop, AssetKind::kVisualMesh, true));
   PROBE_TRY(check_asset(s.fixture_visual, AssetKind::kVisualMesh, true));
   PROBE_TRY(check_asset(s.fixture_collision, AssetKind::kCollisionMesh, true));
-  PROBE_TRY(check_zero(s.zero));
+  if (s.backdrop_stands > 1 || (s.backdrop_stands == 1 && s.backdrop == kNone) ||
+      (s.backdrop_stands == 0 && s.backdrop_z != 0))
+    return fail(Rule::kBackdrop, &s.backdrop_stands,
+                "a backdrop stands (1) or not (0, and no height), and one that stands is there");
+  PROBE_TRY(check_magnitude(s.backdrop_z, Magnitude::kPlace));
   PROBE_TRY(check_magnitude(s.fixture_position, Magnitude::kPlace));
   PROBE_TRY(check_magnitude(s.base_position, Magnitude::kPlace));
   PROBE_TRY(check_unit(s.base_rotation, "the rotation of a robot's base"));

@@ -40,6 +40,7 @@ class RecordCheck : FieldCheck {
   Status check(const AssetRecord& asset) const;
   Status check(const ObjectRecord& object) const;
   Status check(const MassRecord& mass) const;
+  Status check(const DampingRecord& damping) const;
   Status check(const RobotRecord& robot) const;
   Status check(const DriveRecord& drive) const;
   Status check(const LawRecord& law) const;

@@ -60,10 +60,12 @@ class VariationCheck : FieldCheck {
   using FieldCheck::FieldCheck;
 
   Status run() {
-    std::vector<bool> sensors(t.sensors.size()), covers(t.covers.size()), masses(t.masses.size());
+    std::vector<bool> sensors(t.sensors.size()), covers(t.covers.size()), masses(t.masses.size()),
+        dampings(t.dampings.size());
     for (const CameraRecord& c : t.cameras) PROBE_TRY(own(c.sensor, 1, sensors));
     for (const ObjectRecord& o : t.objects) {
       PROBE_TRY(own(o.mass, 1, masses));
+      PROBE_TRY(own(o.damping, 1, dampings));
       PROBE_TRY(own(o.cover, 1, covers));
       for (const CoverRecord& cover : slice_of(t.covers, o.cover)) {
         if (cover.what != static_cast<std::uint32_t>(CoverOf::kObject))
@@ -90,6 +92,9 @@ class VariationCheck : FieldCheck {
     }
     for (std::size_t i = 0; i < masses.size(); ++i) {
       if (!masses[i]) return fail(Rule::kMass, &t.masses[i], "a mass belongs to nobody");
+    }
+    for (std::size_t i = 0; i < dampings.size(); ++i) {
+      if (!dampings[i]) return fail(Rule::kDamping, &t.dampings[i], "a damping belongs to nobody");
     }
     PROBE_TRY(moves());
     PROBE_TRY(shakes());

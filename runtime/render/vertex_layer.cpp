@@ -158,8 +158,9 @@ void VertexLayer::read_textures() {
   }
 }
 
-// The triangle in the middle of a pixel: of those that are there the nearest that holds it, else
-// the one of most samples.
+// The triangle in the middle of a pixel: of the body that has most of its samples, and else of any,
+// the nearest that holds it, else the one of most samples. A body of many small triangles may have
+// none in a sample that holds the middle, while a table behind it has one in all.
 const VertexLayer::Fragment& VertexLayer::middle_of(std::span<const Fragment> pixel,
                                                     PixelAt at) const {
   if (pixel.size() == 1) return pixel[0];
@@ -167,7 +168,22 @@ const VertexLayer::Fragment& VertexLayer::middle_of(std::span<const Fragment> pi
   const Fragment* inside = nullptr;
   const Fragment* most = &pixel[0];
   float nearest = 0;
+  const auto body_of = [](const Fragment& fragment) {
+    return fragment.face == nullptr ? 0 : int{fragment.face->body};
+  };
+  const auto samples_of = [&](int body) {
+    int samples = 0;
+    for (const Fragment& fragment : pixel) samples += body_of(fragment) == body ? fragment.samples : 0;
+    return samples;
+  };
+  constexpr int kMost = 3, kAny = -1;  // of four samples
+  int wanted = kAny;
   for (const Fragment& fragment : pixel) {
+    if (samples_of(body_of(fragment)) >= kMost) wanted = body_of(fragment);
+  }
+  for (const Fragment& fragment : pixel) {
+    if (wanted != kAny && body_of(fragment) != wanted) continue;
+    if (wanted != kAny && body_of(*most) != wanted) most = &fragment;
     if (fragment.samples > most->samples) most = &fragment;
     if (fragment.face == nullptr || !is_inside(*fragment.face, across, down)) continue;
     const float nearness = fragment.denominator / fragment.face->volume;

@@ -124,6 +124,11 @@ double backdrop_lift(std::optional<double> table_height, double surface_z) {
   return std::abs(lift) <= kMeant || std::abs(lift) > kOtherThing ? 0 : lift;
 }
 
+double backdrop_lift(const plan::SceneRecord& scene, std::optional<double> table_height) {
+  return scene.backdrop_stands != 0 ? scene.surface_z - scene.backdrop_z
+                                    : backdrop_lift(table_height, scene.surface_z);
+}
+
 Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh& fixture,
                                      const std::array<double, 4>& area, double surface_z,
                                      std::span<const Cover> covers) {

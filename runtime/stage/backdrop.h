@@ -33,6 +33,8 @@ std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fix
 // table, one within 2 mm (drawn a little lower so that nothing flickers), or one farther than half
 // a metre away, which is the floor of a room.
 double backdrop_lift(std::optional<double> table_height, double surface_z);
+// The same of a scene: one that stands is raised as far as the surface was.
+double backdrop_lift(const plan::SceneRecord& scene, std::optional<double> table_height);
 
 // A texture on a part of a backdrop.
 struct Cover {

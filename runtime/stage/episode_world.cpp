@@ -119,6 +119,10 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
     spec.bodies.push_back({std::string(plan_.text(records[i].name)), shape,
                            mass == nullptr ? object.density : mass->mass / shape->volume,
                            object.friction, at.objects[i]});
+    if (const plan::DampingRecord* damping = plan_.damping(object)) {
+      spec.bodies.back().damping = damping->shift;
+      spec.bodies.back().turn_damping = damping->turn;
+    }
   }
   if (bodies_.fixture != TaskBodies::kNone) {
     spec.fixtures.push_back({std::string(plan_.text(records[bodies_.fixture].name)),

@@ -112,7 +112,7 @@ Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& tas
   const auto height =
       table_height({backdrop.get()}, {fixture.get(), to_vec(scene.fixture_position)}, scene.area,
                    scene.surface_z);
-  const double lift = backdrop_lift(height, scene.surface_z);
+  const double lift = backdrop_lift(scene, height);
   if (lift == 0) return lift;
   for (const plan::ViewRecord& view : plan.views(task)) {
     if (view.photo == plan::kNone) continue;
@@ -120,7 +120,8 @@ Result<double> lift_backdrop(const plan::Plan& plan, const plan::TaskRecord& tas
         Fault::kRender,
         fmt::format("the surface is at {:.3f} m, but the backdrop's table, which the "
                     "photo `{}` shows, at {:.3f} m: a photo cannot move with the surface",
-                    scene.surface_z, plan.text(plan.assets()[view.photo].path), *height),
+                    scene.surface_z, plan.text(plan.assets()[view.photo].path),
+                    scene.surface_z - lift),
         "scene `" + std::string(plan.text(scene.name)) + "`"};
   }
   return lift;

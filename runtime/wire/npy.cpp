@@ -31,26 +31,8 @@ std::string_view after_key(std::string_view header, std::string_view key) {
   return first == std::string_view::npos ? std::string_view() : rest.substr(first);
 }
 
-}  // namespace
-
-Bytes to_npy(const Array& array) {
-  std::string header = "{'descr': '" + array.dtype +
-                       "', 'fortran_order': False, 'shape': " + shape_text(array.shape) + ", }";
-  const std::size_t before = kMagic.size() + 2 + 2;
-  const std::size_t total = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
-  header.append(total - before - header.size() - 1, ' ');
-  header += '\n';
-  std::string text(kMagic);
-  text += {1, 0, static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
-  text += header;
-  Bytes file(text.size() + array.bytes.size());
-  std::copy(text.begin(), text.end(), file.begin());
-  std::copy(array.bytes.begin(), array.bytes.end(),
-            file.begin() + static_cast<std::ptrdiff_t>(text.size()));
-  return file;
-}
-
-Result<Array> from_npy(const Bytes& file) {
+// As it is written, whatever its dtype.
+Result<Array> read_npy(const Bytes& file) {
   if (file.size() < 10 || std::memcmp(file.data(), kMagic.data(), kMagic.size()) != 0) {
     return bad_npy("does not begin with numpy's mark");
   }
@@ -84,8 +66,58 @@ Result<Array> from_npy(const Bytes& file) {
     shape = next == std::string_view::npos ? std::string_view() : shape.substr(next);
   }
   array.bytes.assign(file.begin() + static_cast<std::ptrdiff_t>(first + length), file.end());
+  return array;
+}
+
+}  // namespace
+
+Bytes to_npy(const Array& array) {
+  std::string header = "{'descr': '" + array.dtype +
+                       "', 'fortran_order': False, 'shape': " + shape_text(array.shape) + ", }";
+  const std::size_t before = kMagic.size() + 2 + 2;
+  const std::size_t total = (before + header.size() + 1 + kAlignment - 1) / kAlignment * kAlignment;
+  header.append(total - before - header.size() - 1, ' ');
+  header += '\n';
+  std::string text(kMagic);
+  text += {1, 0, static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
+  text += header;
+  Bytes file(text.size() + array.bytes.size());
+  std::copy(text.begin(), text.end(), file.begin());
+  std::copy(array.bytes.begin(), array.bytes.end(),
+            file.begin() + static_cast<std::ptrdiff_t>(text.size()));
+  return file;
+}
+
+Result<Array> from_npy(const Bytes& file) {
+  PROBE_ASSIGN(Array array, read_npy(file));
   PROBE_TRY(check_fit(array));
   return array;
+}
+
+Result<std::vector<std::string>> texts_from_npy(const Bytes& file) {
+  constexpr std::size_t kPoint = 4;  // bytes, little-endian
+  PROBE_ASSIGN(const Array array, read_npy(file));
+  std::size_t width = 0;
+  const std::string_view dtype = array.dtype;
+  const char* const end = dtype.data() + dtype.size();
+  if (!dtype.starts_with("<U") || array.shape.size() != 1 ||
+      std::from_chars(dtype.data() + 2, end, width).ptr != end)
+    return bad_npy("is no row of texts");
+  const auto count = static_cast<std::size_t>(array.shape[0]);
+  if (array.shape[0] < 0 || width == 0 || array.bytes.size() % (kPoint * width) != 0 ||
+      array.bytes.size() / (kPoint * width) != count)
+    return bad_npy("has another size than its shape says");
+  std::vector<std::string> texts(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t k = 0; k < width; ++k) {
+      const std::uint8_t* const point = &array.bytes[kPoint * (i * width + k)];
+      if (std::all_of(point, point + kPoint, [](std::uint8_t byte) { return byte == 0; })) break;
+      if (point[0] > 127 || point[1] != 0 || point[2] != 0 || point[3] != 0)
+        return bad_npy("has a letter that is not ASCII");
+      texts[i] += static_cast<char>(point[0]);
+    }
+  }
+  return texts;
 }
 
 }  // namespace probe::wire

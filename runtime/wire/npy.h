@@ -2,6 +2,9 @@
 // messages.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "runtime/wire/value.h"
 
 namespace probe::wire {
@@ -11,5 +14,7 @@ Bytes to_npy(const Array& array);
 // Fails (kPolicy) on another magic, a header that is no header, Fortran order, a dtype that
 // is not read, or bytes that do not fit the shape.
 Result<Array> from_npy(const Bytes& file);
+// A row of texts of fixed width, "<U35". Fails as from_npy does, and on letters beyond ASCII.
+Result<std::vector<std::string>> texts_from_npy(const Bytes& file);
 
 }  // namespace probe::wire

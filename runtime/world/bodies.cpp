@@ -20,11 +20,21 @@ void predict(Body* body, const Ambient& ambient, double dt) {
   body->velocity =
       (body->velocity + dt * ambient.gravity) * std::max(0.0, 1.0 - dt * ambient.linear_damping);
   body->spin *= std::max(0.0, 1.0 - dt * ambient.angular_damping);
+  // (m + dt d) v+ = m v: what the damping takes, at the speed that is left.
+  if (body->drag != 0) body->velocity *= body->mass / (body->mass + body->drag);
+  const bool is_slowed = body->turn_drag != 0;
   if (ambient.tilt_locked) {
     const Vec3 up = body->axes.transpose().col(2);
     body->spin = Vec3(0, 0, body->spin.z());
     body->response.setZero();
-    body->response(2, 2) = 1.0 / up.dot(body->inertia * up);
+    const double inertia = up.dot(body->inertia * up);
+    if (is_slowed) body->spin *= inertia / (inertia + body->turn_drag);
+    body->response(2, 2) = 1.0 / (inertia + body->turn_drag);
+  } else if (is_slowed) {
+    const Mat3 heavier = body->inertia + body->turn_drag * Mat3::Identity();
+    body->response = body->axes * heavier.inverse() * body->axes.transpose();
+    body->spin =
+        body->response * (body->axes * (body->inertia * (body->axes.transpose() * body->spin)));
   } else {
     const Mat3 turned = body->axes * body->inertia_inverse;
     body->response = turned * body->axes.transpose();

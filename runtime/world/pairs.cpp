@@ -170,7 +170,8 @@ struct Search {
   void take_bodies(const Collider& a, const Collider* b, ContactRows* rows) const {
     const std::vector<Body>& bodies = *problem->bodies;
     const auto inverse_mass = [&](const Collider& c) {
-      return is_led(c) ? 0.0 : 1.0 / bodies[static_cast<size_t>(c.body)].mass;
+      const Body& body = bodies[static_cast<size_t>(c.body)];
+      return is_led(c) ? 0.0 : 1.0 / (body.mass + body.drag);
     };
     if (a.body >= 0 && moves(a)) {
       rows->body_a = a.body;

@@ -66,6 +66,10 @@ struct BodySpec {
   double density = 1000;  // kg/m3
   double friction = 0.5;
   Pose pose;  // model origin
+  // What resists it wherever it is: a force at its centre of mass against its velocity, a torque
+  // against its spin. Implicit in the substep, so that any strength only slows.
+  double damping = 0;       // N s/m
+  double turn_damping = 0;  // N m s/rad
 };
 
 // What never moves: a sink, a shelf. Its parts may be many.

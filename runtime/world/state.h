@@ -82,6 +82,9 @@ struct Body {
   Mat3 inertia = Mat3::Zero(),
        inertia_inverse = Mat3::Zero();  // kg m2, 1/(kg m2); body axes, about the centre of mass
   Vec3 model_to_center = Vec3::Zero();  // m, centre of mass in the model frame
+  // A substep times its damping: forces of the substep move it as if it were so much heavier.
+  double drag = 0;       // kg
+  double turn_drag = 0;  // kg m2
   // State.
   Vec3 position = Vec3::Zero();  // m, centre of mass
   Quat rotation = Quat::Identity();

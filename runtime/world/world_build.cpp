@@ -262,11 +262,17 @@ Status Builder::add_bodies() {
       return fail(name + " has a density that is not positive");
     if (!(body.friction >= 0) || !std::isfinite(body.friction))
       return fail(name + " has negative or non-finite friction");
+    for (const double damping : {body.damping, body.turn_damping}) {
+      if (!(damping >= 0) || !std::isfinite(damping))
+        return fail(name + " has negative or non-finite damping");
+    }
     Body b;
     b.mass = body.density * body.shape->volume;
     b.inertia = body.density * body.shape->unit_inertia;
     b.inertia_inverse = b.inertia.inverse();
     b.model_to_center = body.shape->center_of_mass;
+    b.drag = spec_.dt * body.damping;
+    b.turn_drag = spec_.dt * body.turn_damping;
     if (!(b.mass > 1e-9) || !b.inertia_inverse.allFinite())
       return fail(name + " has next to no mass");
     Collider c = make_collider(body.shape, body.friction, 0);

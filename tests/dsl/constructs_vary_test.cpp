@@ -81,6 +81,45 @@ TEST_CASE(
   CHECK(codes("mass 0.2kg com (0cm, 0cm, 1cm) inertia (1kgm2, 1kgm2, 1kgm2, 0kgm2)") == "P0304");
 }
 
+TEST_CASE("object_st: `damping` of moving and of turning, either alone, gone again in a copy") {
+  const Built built(
+      "object slow like red { damping 0.1Ns/m 0.002Nms/rad }\n"
+      "object turning like red { damping 0.002Nms/rad }\n"
+      "object moving like slow { damping 0.2Ns/m; scale 2 }\n"
+      "object free like slow { damping 0Ns/m; friction 0.3 }\n"
+      "variant slower of red_on_tray { source slow }\n"
+      "variant turned of red_on_tray { source turning }\n"
+      "variant moved of red_on_tray { source moving }\n"
+      "variant freed of red_on_tray { source free }\n");
+  const plan::Plan& plan = built.plan();
+  const auto damping = [&](const char* task) {
+    return plan.damping(plan.objects()[built.task(task).source]);
+  };
+  CHECK(damping("red_on_tray") == nullptr);
+  REQUIRE(damping("slower") != nullptr);
+  CHECK(damping("slower")->shift == 0.1);
+  CHECK(damping("slower")->turn == 0.002);
+  REQUIRE(damping("turned") != nullptr);
+  CHECK(damping("turned")->shift == 0);
+  CHECK(damping("turned")->turn == 0.002);
+  REQUIRE(damping("moved") != nullptr);
+  CHECK(damping("moved")->shift == 0.2);
+  CHECK(damping("moved")->turn == 0);
+  CHECK(damping("freed") == nullptr);
+  CHECK(built.task("slower").axes == bit(plan::Axis::kObjectSource));
+  const auto codes = [](const char* said) {
+    return analyze_with_suite("object o like red { " + std::string(said) + "; name \"o\" }\n")
+        ->codes();
+  };
+  CHECK(codes("damping 0.1Ns/m 0.1Nms/rad") == "");
+  CHECK(codes("damping -0.1Ns/m") == "P0304");
+  CHECK(codes("damping 0.1Ns/m -0.1Nms/rad") == "P0304");
+  CHECK(codes("damping 1e9Ns/m") == "P0304");
+  CHECK(codes("damping 0.1Nms/rad 0.1Ns/m") == "P0302 P0302");
+  CHECK(codes("damping 0.1N") == "P0302");
+  CHECK(codes("damping") == "P0101");
+}
+
 TEST_CASE("object_st: paint by name or by number, and the colour that is said agrees") {
   const auto a = clean(
       "object o like red { paint (0, 0.2, 1); color blue; name \"o\" }\n"

@@ -372,8 +372,12 @@ scene kitchen like bench {
   physics 1000Hz friction 0.5
 }
 scene raised like bench { surface 85cm area (-50cm, -50cm) .. (50cm, 50cm) }
+scene standing like raised { backdrop "sink" stands }
+scene lifted like standing { surface 95cm area (-50cm, -50cm) .. (50cm, 50cm) }
 variant v of red_on_tray { scene kitchen }
 variant w of red_on_tray { scene raised }
+variant x of red_on_tray { scene standing }
+variant y of red_on_tray { scene lifted }
 )");
   const plan::Plan& plan = built.plan();
   const plan::SceneRecord& kitchen = plan.scenes()[built.task("v").scene];
@@ -393,4 +397,14 @@ variant w of red_on_tray { scene raised }
   const plan::SceneRecord& raised = plan.scenes()[built.task("w").scene];
   CHECK(raised.base_position[2] == 0.85);
   CHECK(raised.physics_hz == 500);
+  // A backdrop stands for the surface that it was written with, in copies as well.
+  CHECK(raised.backdrop_stands == 0);
+  CHECK(raised.backdrop_z == 0);
+  const plan::SceneRecord& standing = plan.scenes()[built.task("x").scene];
+  CHECK(standing.backdrop_stands == 1);
+  CHECK(standing.backdrop_z == 0.85);
+  const plan::SceneRecord& lifted = plan.scenes()[built.task("y").scene];
+  CHECK(lifted.backdrop_stands == 1);
+  CHECK(lifted.backdrop_z == 0.85);
+  CHECK(lifted.surface_z == 0.95);
 }

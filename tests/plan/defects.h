@@ -148,7 +148,7 @@ inline std::vector<Defect> catalogue_defects() {
       {"OBJT", "positive extent", [](Records& r, Writer&) { r.objects[0].box_max[1] = -1; }},
       {"OBJT", "a density", [](Records& r, Writer&) { r.objects[0].density = 0; }},
       {"OBJT", "a friction", [](Records& r, Writer&) { r.objects[0].friction = std::nan(""); }},
-      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero2[0] = 1; }},
+      {"OBJT", "reserved", [](Records& r, Writer&) { r.objects[0].zero = 1; }},
       {"ASST", "leads out", [](Records& r, Writer& w) { r.assets[0].path = w.text("../secret"); }},
       {"ASST", "leads out",
        [](Records& r, Writer& w) { r.assets[0].path = w.text("/etc/passwd"); }},
@@ -388,6 +388,24 @@ inline std::vector<Defect> task_defects() {
       {"MASS", "belongs to nobody",
        [](Records& r, Writer&) {
          r.masses.push_back({0.2, {}, {}});
+       }},
+      {"SCNE", "a backdrop stands", [](Records& r, Writer&) { r.scenes[0].backdrop_stands = 2; }},
+      {"SCNE", "a backdrop stands",
+       [](Records& r, Writer&) {
+         r.scenes[0].backdrop = kNone, r.scenes[0].backdrop_stands = 1;
+       }},
+      {"SCNE", "a backdrop stands", [](Records& r, Writer&) { r.scenes[0].backdrop_z = 0.9; }},
+      {"DAMP", "resists nothing",
+       [](Records& r, Writer&) {
+         r.dampings.push_back({0, 0}), r.objects[0].damping = {0, 1};
+       }},
+      {"DAMP", "a damping",
+       [](Records& r, Writer&) {
+         r.dampings.push_back({0.1, -0.1}), r.objects[0].damping = {0, 1};
+       }},
+      {"DAMP", "belongs to nobody",
+       [](Records& r, Writer&) {
+         r.dampings.push_back({0.1, 0});
        }},
       {"OBJT", "is painted",
        [](Records& r, Writer&) {

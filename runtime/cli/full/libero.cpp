@@ -79,6 +79,8 @@ void add_libero(Verb app, int& exit) {
   fidelity.add_option("--records", measured->records,
                       "what was recorded of LIBERO's own program: libero_tasks.json and others");
   fidelity.add_option("--starts", measured->starts, "of a task that come to rest (default: 50)");
+  fidelity.add_option("--sheets", measured->sheets,
+                      "folder for pictures: theirs, ours, four times what differs");
   fidelity.add_flag("--all", *lists_all, "all that is beyond a bar, not the first few");
   fidelity.refuse_empty_values();
   fidelity.callback([measured, lists_all, &exit] { exit = tell_fidelity(*measured, *lists_all); });

@@ -123,6 +123,10 @@ TEST_CASE(
         "  region inside box (-2cm, -2cm, -2cm) .. (2cm, 2cm, 4cm)\n"
         "}\n");
   CHECK(cup.notes.empty());
+  MujocoOptions damped = cup_options(folder);
+  damped.free_damping = 0.0005;
+  CHECK(converted(damped).declaration.find(
+            "name \"cup\"\n  damping 0.0005Ns/m 0.0005Nms/rad\n  region") != std::string::npos);
   CHECK(cup.mass == doctest::Approx(0.0288));
   CHECK(cup.center_of_mass.norm() < 1e-12);
   CHECK(cup.friction == 0.95);

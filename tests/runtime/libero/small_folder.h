@@ -10,6 +10,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/libero/import.h"
@@ -97,27 +98,46 @@ inline std::string npy(const std::vector<std::vector<double>>& rows) {
   return out;
 }
 
-// A zip archive of one stored member.
-inline std::string stored_zip(const std::string& name, const std::string& bytes) {
-  std::uint32_t crc = 0xffffffffU;
-  for (const char c : bytes) {
-    crc ^= static_cast<std::uint8_t>(c);
-    for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ (0xedb88320U & (0U - (crc & 1)));
-  }
-  crc = ~crc;
+// An array of bytes as numpy writes it; `shape` as Python has it: "(3,)".
+inline std::string npy(const std::string& descr, const std::string& shape,
+                       const std::string& bytes) {
+  std::string header =
+      "{'descr': '" + descr + "', 'fortran_order': False, 'shape': " + shape + ", }";
+  while ((10 + header.size() + 1) % 64 != 0) header += ' ';
+  header += '\n';
+  std::string out("\x93NUMPY\x01\0", 8);
+  out += static_cast<char>(header.size() & 0xff);
+  out += static_cast<char>(header.size() >> 8);
+  return out + header + bytes;
+}
+
+// A zip archive of stored members: names and bytes.
+inline std::string stored_zip(const std::vector<std::pair<std::string, std::string>>& members) {
   const auto number = [](std::uint64_t value, int count) {
     std::string out;
     for (int i = 0; i < count; ++i) out += static_cast<char>((value >> (8 * i)) & 0xff);
     return out;
   };
-  const std::string common = number(20, 2) + number(0, 2) + number(0, 2) + number(0, 4) +
-                             number(crc, 4) + number(bytes.size(), 4) + number(bytes.size(), 4) +
-                             number(name.size(), 2) + number(0, 2);
-  const std::string local = "PK\x03\x04" + common + name + bytes;
-  const std::string central = "PK\x01\x02" + number(20, 2) + common + number(0, 2) + number(0, 2) +
-                              number(0, 2) + number(0, 4) + number(0, 4) + name;
-  return local + central + "PK\x05\x06" + number(0, 4) + number(1, 2) + number(1, 2) +
-         number(central.size(), 4) + number(local.size(), 4) + number(0, 2);
+  std::string locals, centrals;
+  for (const auto& [name, bytes] : members) {
+    std::uint32_t crc = 0xffffffffU;
+    for (const char c : bytes) {
+      crc ^= static_cast<std::uint8_t>(c);
+      for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ (0xedb88320U & (0U - (crc & 1)));
+    }
+    const std::string common = number(20, 2) + number(0, 2) + number(0, 2) + number(0, 4) +
+                               number(~crc, 4) + number(bytes.size(), 4) +
+                               number(bytes.size(), 4) + number(name.size(), 2) + number(0, 2);
+    centrals += "PK\x01\x02" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) +
+                number(0, 4) + number(locals.size(), 4) + name;
+    locals += "PK\x03\x04" + common + name + bytes;
+  }
+  return locals + centrals + "PK\x05\x06" + number(0, 4) + number(members.size(), 2) +
+         number(members.size(), 2) + number(centrals.size(), 4) + number(locals.size(), 4) +
+         number(0, 2);
+}
+inline std::string stored_zip(const std::string& name, const std::string& bytes) {
+  return stored_zip({{name, bytes}});
 }
 
 }  // namespace probe::test

@@ -70,6 +70,18 @@ TEST_CASE(
   CHECK(backdrop_lift(std::nullopt, 0.75) == 0);
 }
 
+TEST_CASE("a backdrop that stands moves as far as its scene moved the surface, its table or not") {
+  plan::SceneRecord scene;
+  scene.surface_z = scene.backdrop_z = 0.43676;
+  scene.backdrop_stands = 1;
+  CHECK(backdrop_lift(scene, 0.42492) == 0);
+  scene.surface_z += 0.05;
+  CHECK(backdrop_lift(scene, 0.42492) == doctest::Approx(0.05));
+  CHECK(backdrop_lift(scene, std::nullopt) == doctest::Approx(0.05));
+  scene.backdrop_stands = 0;
+  CHECK(backdrop_lift(scene, 0.42492) == doctest::Approx(0.06184));
+}
+
 TEST_CASE("the tables of our own scenes lie where their surfaces are") {
   for (const auto& [name, area, z] :
        {std::tuple{"table", std::array{-0.34, -0.20, 0.04, 0.20}, 0.87},

@@ -113,6 +113,78 @@ TEST_CASE(
   CHECK(std::fabs(s.bodies[0].spin.z()) < 1e-6);
 }
 
+TEST_CASE("what is damped slows by the formula, and at a finer step as the exponential does") {
+  constexpr double kDamping = 0.02, kTurn = 1e-5, kSeconds = 0.5;  // N s/m, N m s/rad
+  for (const double dt : {0.002, 0.0005}) {
+    Stepper s = cubes({Vec3(0, 0, 5)});
+    s.parameters.dt = dt;
+    Body& body = s.bodies[0];
+    body.drag = dt * kDamping;
+    body.turn_drag = dt * kTurn;
+    body.velocity = Vec3(0.3, 0, 0.4);
+    body.spin = Vec3(3, -4, 0);
+    const double slow = kDamping / body.mass, slow_turn = kTurn / body.inertia(0, 0);  // 1/s
+    const int steps = static_cast<int>(std::lround(kSeconds / dt));
+    for (int i = 0; i < steps; ++i) REQUIRE(s.advance().ok());
+    CHECK(body.velocity.norm() ==
+          doctest::Approx(0.5 * std::pow(1 + dt * slow, -steps)).epsilon(1e-12));
+    CHECK(body.spin.norm() ==
+          doctest::Approx(5 * std::pow(1 + dt * slow_turn, -steps)).epsilon(1e-12));
+    // (1 + dt r)^-(t / dt) = exp(-r t) (1 + dt r^2 t / 2 + ..)
+    CHECK(body.velocity.norm() / (0.5 * std::exp(-slow * kSeconds)) - 1 ==
+          doctest::Approx(dt * slow * slow * kSeconds / 2).epsilon(0.02));
+    CHECK(body.spin.norm() / (5 * std::exp(-slow_turn * kSeconds)) - 1 ==
+          doctest::Approx(dt * slow_turn * slow_turn * kSeconds / 2).epsilon(0.02));
+    CHECK(body.velocity.cross(Vec3(0.3, 0, 0.4)).norm() < 1e-15);
+  }
+}
+
+TEST_CASE("what falls under damping comes to the speed at which it carries the weight") {
+  WorldSpec spec = quiet_spec();
+  spec.surface_z = -1000;
+  BodySpec falling{"cube", cube, 1000, 0.5, at(0, 0, 0)};
+  falling.damping = 0.5;
+  spec.bodies.push_back(falling);
+  const auto world = make(spec);
+  run(world.get(), 1000);
+  const double mass = 1000 * cube->volume;
+  CHECK(world->body(0).velocity.z() == doctest::Approx(-mass * 9.81 / 0.5).epsilon(1e-9));
+  // z(t) = -v (t - (1 - e^(-t / T)) T), T = m / d: two seconds are 37 T.
+  const double v = mass * 9.81 / 0.5, time = mass / 0.5;
+  CHECK(world->body(0).pose.position.z() == doctest::Approx(-v * (2 - time)).epsilon(1e-3));
+}
+
+TEST_CASE("a damped body that tumbles and hits never gains energy, however strong its damping") {
+  const auto brick = box(0.01, 0.03, 0.05);
+  for (const double damping : {1e-6, 1e-3, 10.0}) {
+    Stepper s = cubes({Vec3(0, 0, 0.06)});
+    s.ambient.gravity = Vec3(0, 0, -9.81);
+    Body& body = s.bodies[0];
+    body.mass = 1000 * brick->volume;
+    body.inertia = 1000 * brick->unit_inertia;
+    body.inertia_inverse = body.inertia.inverse();
+    body.drag = body.turn_drag = s.parameters.dt * damping;
+    s.colliders[0].shape = brick;
+    s.colliders[0].local.half = Vec3(0.01, 0.03, 0.05);
+    body.spin = Vec3(5, 7, -3);
+    body.velocity = Vec3(0.2, 0.1, 0);
+    const auto energy = [&] {
+      const Vec3 w = body.axes.transpose() * body.spin;
+      return 0.5 * body.mass * body.velocity.squaredNorm() + 0.5 * w.dot(body.inertia * w) +
+             body.mass * 9.81 * body.position.z();
+    };
+    double before = energy();
+    for (int i = 0; i < 1000; ++i) {
+      REQUIRE(s.advance().ok());
+      const double after = energy();
+      // A substep's fall is that of its end: g^2 dt^2 m / 2 of rounding a substep.
+      CHECK(after <= before + 0.5 * body.mass * 9.81 * 9.81 * 4e-6);
+      before = after;
+    }
+    CHECK(body.position.z() > 0.009);
+  }
+}
+
 TEST_CASE("an off-centre hit keeps both momenta and never gains energy") {
   Stepper s = cubes({Vec3(0, 0, 0.5), Vec3(0.04, 0.002, 0.5)});
   s.bodies[0].velocity = Vec3(0.5, 0, 0);
