@@ -92,12 +92,14 @@ bool is_asked(const Checked& checked, std::string_view name, const syntax::File&
 
 PhraseUse phrase_use(const Checked& checked) {
   PhraseUse use;
-  for (const auto& object : checked.symbols.object_decls) {
-    for (const syntax::ObjectStmt& stmt : object.node->body) {
+  const auto count = [&](const std::vector<syntax::ObjectStmt>& body) {
+    for (const syntax::ObjectStmt& stmt : body) {
       if (const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt))
         ++use.declared[phrase->name.text];
     }
-  }
+  };
+  for (const auto& object : checked.symbols.object_decls) count(object.node->body);
+  for (const auto& extension : checked.symbols.extend_decls) count(extension.node->body);
   for (const auto& derive : checked.symbols.derive_decls) {
     for (const syntax::Binder& binder : derive.node->binders) {
       if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over))
@@ -127,6 +129,14 @@ void check_unused(const Checked& checked, Reporter& reporter) {
     reporter.report(Code::P0205, name.span,
                     std::string(kind) + " `" + std::string(name.text) + "` is never used");
   };
+  const auto report_phrases = [&](const std::vector<syntax::ObjectStmt>& body) {
+    for (const syntax::ObjectStmt& stmt : body) {
+      const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt);
+      if (phrase == nullptr || phrases.axes.contains(phrase->axis.text)) continue;
+      const auto declared = phrases.declared.find(phrase->name.text);
+      if (words[phrase->name.text] <= declared->second) report("phrase", phrase->name);
+    }
+  };
   for (const syntax::File* file : files) {
     for (const syntax::Decl& decl : file->decls) {
       if (!decl.complete) continue;
@@ -144,12 +154,9 @@ void check_unused(const Checked& checked, Reporter& reporter) {
           report("set of questions", questions->name);
       } else if (const auto* object = std::get_if<syntax::ObjectDecl>(&decl.node)) {
         if (words[object->name.text] <= 1) report("object", object->name);
-        for (const syntax::ObjectStmt& stmt : object->body) {
-          const auto* phrase = std::get_if<syntax::PhraseStmt>(&stmt);
-          if (phrase == nullptr || phrases.axes.contains(phrase->axis.text)) continue;
-          const auto declared = phrases.declared.find(phrase->name.text);
-          if (words[phrase->name.text] <= declared->second) report("phrase", phrase->name);
-        }
+        report_phrases(object->body);
+      } else if (const auto* extension = std::get_if<syntax::ExtendDecl>(&decl.node)) {
+        report_phrases(extension->body);
       }
     }
   }

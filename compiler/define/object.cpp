@@ -1,5 +1,8 @@
-// `object`: its statements over what it copied.
+// `object`: its statements over what it copied, and what an `extend` adds.
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
 
 #include "compiler/define/attribute.h"
 #include "compiler/define/axes.h"
@@ -318,7 +321,96 @@ void read_look(Context& context, const syntax::File& file,
   for (const syntax::ObjectStmt& stmt : body) std::visit(reader, stmt);
 }
 
+namespace {
+
+// What another file may add to an object: what is known of it, never what it is. What is said
+// already stays said.
+struct Extender {
+  Context& context;
+  ObjectReader& reader;
+  Object& object;
+
+  Diagnostic& repeats(const Span& span, const std::string& what) {
+    return context.report(Code::P0203, span, what)
+        .label(object.span, "declared here")
+        .help("another object of the kind: `object NAME like " + object.name + " { .. }`");
+  }
+  void read(const auto& stmt) {
+    repeats(stmt.span, "`extend` adds attributes, facts, phrases and `seen in`: `" +
+                           std::string(context.sources.text(stmt.span)) +
+                           "` is said where `" + object.name + "` is declared");
+  }
+  void read(const syntax::AttributeStmt& stmt) {
+    const auto attribute = context.symbols.attributes.peek(stmt.attribute.text);
+    if (attribute && !object.values[*attribute].empty()) {
+      repeats(stmt.span, "`" + object.name + "` has a `" + std::string(stmt.attribute.text) +
+                             "` already");
+      return;
+    }
+    reader(stmt);
+  }
+  void read_facts(const std::vector<syntax::Name>& names, const auto& stmt, Truth truth) {
+    for (const syntax::Name& name : names) {
+      const auto fact = context.symbols.facts.peek(name.text);
+      if (!fact || object.facts[*fact] == Truth::kNo) continue;
+      if (object.facts[*fact] == Truth::kUnknown && truth == Truth::kYes) continue;
+      repeats(name.span, "`" + std::string(name.text) + "` is said of `" + object.name + "` already");
+      return;
+    }
+    reader(stmt);
+  }
+  void read(const syntax::IsStmt& stmt) { read_facts(stmt.facts, stmt, Truth::kYes); }
+  void read(const syntax::MaybeStmt& stmt) { read_facts(stmt.facts, stmt, Truth::kUnknown); }
+  void read(const syntax::SeenInStmt& stmt) {
+    if (object.unseen) {
+      repeats(stmt.span, "`" + object.name + "` is `unseen`");
+      return;
+    }
+    for (const syntax::Name& name : stmt.datasets) {
+      const auto dataset = context.symbols.datasets.peek(name.text);
+      if (!dataset ||
+          std::ranges::find(object.seen_in, static_cast<DatasetId>(*dataset)) ==
+              object.seen_in.end())
+        continue;
+      repeats(name.span,
+              "`" + object.name + "` is seen in `" + std::string(name.text) + "` already");
+      return;
+    }
+    reader(stmt);
+  }
+  void read(const syntax::PhraseStmt& stmt) {
+    for (const Phrase& known : object.phrases) {
+      if (known.name != stmt.name.text) continue;
+      repeats(stmt.span, "`" + object.name + "` has a phrase `" + known.name + "` already");
+      return;
+    }
+    reader(stmt);
+  }
+};
+
+// Objects that no file declares are missed here.
+std::map<std::uint32_t, std::vector<const Declared<syntax::ExtendDecl>*>> extensions(
+    Context& context) {
+  std::map<std::uint32_t, std::vector<const Declared<syntax::ExtendDecl>*>> out;
+  for (const auto& declared : context.symbols.extend_decls) {
+    if (const auto id = context.symbols.objects.find(declared.node->object, context.diagnostics))
+      out[*id].push_back(&declared);
+  }
+  return out;
+}
+
+void extend(Context& context, const Declared<syntax::ExtendDecl>& declared, Object& object) {
+  ObjectReader reader{context, *declared.file, object};
+  reader.has_is = reader.has_maybe = reader.has_seen = true;  // they add to what is there
+  Extender extender{context, reader, object};
+  for (const syntax::ObjectStmt& stmt : declared.node->body)
+    std::visit([&](const auto& one) { extender.read(one); }, stmt);
+}
+
+}  // namespace
+
 void define_objects(Context& context) {
+  const auto extending = extensions(context);
   const auto read = [&](const Declared<syntax::ObjectDecl>& declared, Object& object) {
     object.decl_span = declared.decl->span;
     object.values.resize(context.model.attributes.size());
@@ -326,6 +418,10 @@ void define_objects(Context& context) {
     ObjectReader reader{context, *declared.file, object};
     for (const syntax::ObjectStmt& stmt : declared.node->body) std::visit(reader, stmt);
     reader.forget_color();
+    if (const auto more = extending.find(*context.symbols.objects.peek(object.name));
+        more != extending.end()) {
+      for (const auto* extension : more->second) extend(context, *extension, object);
+    }
     if (object.rest.empty()) object.rest.push_back({});
     grow(object);
     check_size(context, object);

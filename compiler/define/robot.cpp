@@ -2,6 +2,7 @@
 // the kind of its joint.
 #include "compiler/define/robot.h"
 
+#include <map>
 #include <set>
 #include <span>
 
@@ -9,6 +10,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/described.h"
 #include "compiler/define/record.h"
+#include "compiler/define/robot_copy.h"
 #include "compiler/define/robot_fit.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
@@ -22,6 +24,7 @@ struct RobotReader {
   bool has_control = false, has_grip = false, has_drive = false, has_fingers = false;
   Span grip_span = {};
   std::vector<WrittenDrive> drives = {};
+  std::map<const syntax::DriveStmt*, std::optional<WrittenDrive>> read_drives = {};
 
   void check_not_negative(const syntax::Quantity& written, const Quantity& value) {
     if (value.si() >= 0) return;
@@ -97,8 +100,8 @@ struct RobotReader {
                    "expected the nearest reach below the farthest, both from 0, found `" +
                        std::string(context.sources.text(stmt.span)) + "`");
   }
-  void operator()(const syntax::DriveStmt& stmt) {
-    has_drive = true;
+  // What `stmt` says of each of its joints; nothing where a number of it could not be read.
+  std::optional<WrittenDrive> read_drive(const syntax::DriveStmt& stmt) {
     // Whether the joint turns or slides is known only with the URDF; the first quantity decides
     // what the others must be.
     const auto is_of = [&](const std::optional<syntax::Quantity>& written, const Dimension& of) {
@@ -139,7 +142,7 @@ struct RobotReader {
         {slides ? "armature of a sliding joint is in kg" : "armature of a turning joint is in kgm2",
          plan::Magnitude::kArmature},
         &drive.armature);
-    if (!all_read) return;
+    if (!all_read) return std::nullopt;
     if (drive.stiffness)
       check_above_zero(*stmt.stiffness, drive.stiffness->si(),
                        "a drive without stiffness holds nothing");
@@ -151,21 +154,28 @@ struct RobotReader {
     if (drive.damping && by_efforts(robot)) check_not_negative(*stmt.damping, *drive.damping);
     if (drive.friction) check_not_negative(*stmt.friction, *drive.friction);
     if (drive.armature) check_not_negative(*stmt.armature, *drive.armature);
-    for (const syntax::Name& joint : stmt.joints) {
-      for (const WrittenDrive& known : drives) {
-        if (known.joint.text != joint.text) continue;
-        context.report(Code::P0203, joint.span, "joint `" + known.joint.text + "` is driven twice")
-            .label(known.joint.span, "first driven here");
-      }
-      drive.joint = spelled(joint);
-      drives.push_back(drive);
-      if (drives.size() == plan::kMaxDrives + 1) {
-        context.report(
-            Situation::kTooManyDrives, joint.span,
-            "expected at most " + std::to_string(plan::kMaxDrives) + " drives of a robot");
-      }
+    return drive;
+  }
+  // Each statement is read once, whichever of its joints are left to it.
+  void drive(const DrivenJoint& driven) {
+    has_drive = true;
+    const auto [read, is_new] = read_drives.try_emplace(driven.stmt);
+    if (is_new) read->second = read_drive(*driven.stmt);
+    if (!read->second) return;
+    const syntax::Name& joint = *driven.joint;
+    for (const WrittenDrive& known : drives) {
+      if (known.joint.text != joint.text) continue;
+      context.report(Code::P0203, joint.span, "joint `" + known.joint.text + "` is driven twice")
+          .label(known.joint.span, "first driven here");
+    }
+    drives.push_back(*read->second);
+    drives.back().joint = spelled(joint);
+    if (drives.size() == plan::kMaxDrives + 1) {
+      context.report(Situation::kTooManyDrives, joint.span,
+                     "expected at most " + std::to_string(plan::kMaxDrives) + " drives of a robot");
     }
   }
+  void operator()(const syntax::DriveStmt&) {}  // `drive` reads them, joint by joint
   void operator()(const syntax::GripStmt& stmt) {
     has_grip = true;
     grip_span = stmt.span;
@@ -321,45 +331,83 @@ bool moves_finger(const Robot& robot, std::string_view joint) {
   return false;
 }
 
+namespace {
+
+// The statements as they hold, over those of what is copied.
+void read_robot(Context& context, const Declared<syntax::RobotDecl>& declared,
+                const RobotText& text, Robot& robot) {
+  const auto errors = context.mistakes();
+  RobotReader reader{context, robot};
+  const syntax::ControlStmt* control = nullptr;
+  for (const syntax::RobotStmt* stmt : text.statements) {
+    if (const auto* found = std::get_if<syntax::ControlStmt>(stmt)) control = found;
+  }
+  if (control != nullptr) choose_law(*control, robot);
+  for (const syntax::RobotStmt* stmt : text.statements) std::visit(reader, *stmt);
+  for (const DrivenJoint& driven : text.drives) reader.drive(driven);
+  const auto need = [&](bool is_there, std::string_view statement) {
+    if (!declared.decl->complete) return;
+    require(context, is_there, "robot", robot.name, robot.span, statement);
+  };
+  need(!robot.urdf.span.is_none(), "urdf");
+  need(!robot.tcp.span.is_none(), "tcp");
+  need(reader.has_fingers, "fingers");
+  need(reader.has_control, "control");
+  const bool bare = reader.has_fingers && robot.fingers.empty();
+  if (!bare) need(reader.has_grip, "grip");
+  if (bare && reader.has_grip) {
+    context
+        .report(Situation::kNoFingers, reader.grip_span, "`grip` of a robot that has `fingers none`");
+  }
+  need(reader.has_drive, "drive");
+  if (!robot.urdf.span.is_none()) load_model(context, reader.drives, robot);
+  // What is wrong so far may be why a joint is not the arm's.
+  const bool clean = context.mistakes() == errors;
+  // Of a law that is refused nothing is lacking.
+  const bool is_law_known = control != nullptr && robot::find_kind(control->law.text) != nullptr;
+  define_drives(context, reader.drives, is_law_known, robot);
+  if (clean && control != nullptr) define_home(context, *control, robot);
+  if (declared.decl->complete && context.mistakes() == errors) check_fit(context, robot);
+  robot.broken = !declared.decl->complete || context.mistakes() != errors;
+}
+
+// What is underlined in another robot was right there: it does not fit this one.
+void name_copies(Context& context, std::size_t first, const Declared<syntax::RobotDecl>& declared) {
+  for (std::size_t i = first; i < context.diagnostics.size(); ++i) {
+    Diagnostic& said = context.diagnostics[i];
+    if (!is_within(said.primary, declared.decl->span))
+      said.label(declared.node->name.span,
+                 "copied by `" + std::string(declared.node->name.text) + "`");
+  }
+}
+
+}  // namespace
+
 void define_robots(Context& context) {
-  for (const auto& declared : context.symbols.robot_decls) {
-    const syntax::RobotDecl& node = *declared.node;
+  const auto& decls = context.symbols.robot_decls;
+  std::vector<std::optional<std::uint32_t>> parents(decls.size());
+  for (std::size_t i = 0; i < decls.size(); ++i) {
+    context.model.robots.add({});
+    if (const auto& like = decls[i].node->like)
+      parents[i] = context.symbols.robots.find(*like, context.diagnostics);
+  }
+  std::vector<RobotText> texts(decls.size());
+  for (const std::uint32_t i :
+       parents_first(context, parents, context.symbols.robots.names())) {
+    const Declared<syntax::RobotDecl>& declared = decls[i];
     Robot robot;
-    robot.name = std::string(node.name.text);
-    robot.span = node.name.span;
-    const auto errors = context.mistakes();
-    RobotReader reader{context, robot};
-    const syntax::ControlStmt* control = nullptr;
-    for (const syntax::RobotStmt& stmt : node.body) {
-      if (const auto* found = std::get_if<syntax::ControlStmt>(&stmt)) control = found;
+    robot.name = std::string(declared.node->name.text);
+    robot.span = declared.node->name.span;
+    // Of a copy of what has a mistake only its own text could be told of.
+    robot.broken = declared.node->like &&
+                   (!parents[i] || context.model.robots[static_cast<RobotId>(*parents[i])].broken);
+    if (!robot.broken) {
+      texts[i] = over(parents[i] ? texts[*parents[i]] : RobotText{}, *declared.node);
+      const std::size_t first = context.diagnostics.size();
+      read_robot(context, declared, texts[i], robot);
+      if (parents[i]) name_copies(context, first, declared);
     }
-    if (control != nullptr) choose_law(*control, robot);
-    for (const syntax::RobotStmt& stmt : node.body) std::visit(reader, stmt);
-    const auto need = [&](bool is_there, std::string_view statement) {
-      if (!declared.decl->complete) return;
-      require(context, is_there, "robot", robot.name, robot.span, statement);
-    };
-    need(!robot.urdf.span.is_none(), "urdf");
-    need(!robot.tcp.span.is_none(), "tcp");
-    need(reader.has_fingers, "fingers");
-    need(reader.has_control, "control");
-    const bool bare = reader.has_fingers && robot.fingers.empty();
-    if (!bare) need(reader.has_grip, "grip");
-    if (bare && reader.has_grip) {
-      context.report(Situation::kNoFingers, reader.grip_span,
-                     "`grip` of a robot that has `fingers none`");
-    }
-    need(reader.has_drive, "drive");
-    if (!robot.urdf.span.is_none()) load_model(context, reader.drives, robot);
-    // What is wrong so far may be why a joint is not the arm's.
-    const bool clean = context.mistakes() == errors;
-    // Of a law that is refused nothing is lacking.
-    const bool is_law_known = control != nullptr && robot::find_kind(control->law.text) != nullptr;
-    define_drives(context, reader.drives, is_law_known, robot);
-    if (clean && control != nullptr) define_home(context, *control, robot);
-    if (declared.decl->complete && context.mistakes() == errors) check_fit(context, robot);
-    robot.broken = !declared.decl->complete || context.mistakes() != errors;
-    context.model.robots.add(std::move(robot));
+    context.model.robots[static_cast<RobotId>(i)] = std::move(robot);
   }
 }
 

@@ -124,6 +124,7 @@ class Diagnostics {
   bool has_errors() const { return error_count() != 0; }
   bool empty() const { return items_.empty(); }
   std::size_t size() const { return items_.size(); }
+  Diagnostic& operator[](std::size_t i) { return items_[i]; }  // in the order of reporting
   const std::deque<Diagnostic>& items() const { return items_; }
   const std::vector<Silenced>& silenced() const { return silenced_; }
 

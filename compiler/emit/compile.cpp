@@ -132,6 +132,11 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
       });
   for (auto suite = out.model.suites.begin(); suite != behind_used; ++suite)
     out.compilation.own_suites.push_back(suite->name);
+  for (const sema::Task& task : out.model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    ++out.compilation.tasks;
+    out.compilation.starts += task.starts.size();
+  }
   out.compilation.ok = !out.compilation.diagnostics.has_errors();
   if (out.compilation.ok) PROBE_TRY(check_suite_exists(out.model, options.suite));
   return {};
@@ -212,6 +217,8 @@ void merge(Compilation&& program, Compilation& all) {
                             program.unused_phrases.end());
   all.referring.insert(all.referring.end(), program.referring.begin(), program.referring.end());
   all.called.merge(program.called);
+  all.tasks += program.tasks;
+  all.starts += program.starts;
 }
 
 }  // namespace

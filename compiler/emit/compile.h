@@ -54,6 +54,8 @@ struct Compilation {
   std::vector<ReferringWords> referring;  // of every concrete task, source before target
   // What the objects are called when no phrase is chosen, by name.
   std::map<std::string, std::string> called;
+  // How much was looked at: tasks that are no pattern and lack nothing, and their starts.
+  std::size_t tasks = 0, starts = 0;
 };
 
 // In: paths. Out: sources, diagnostics and, from build(), the verified bytes of a plan. The order:

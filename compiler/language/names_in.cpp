@@ -48,8 +48,14 @@ class Walker {
     owner_ = node.name.text;
     all(node.body);
   }
+  void operator()(const ExtendDecl& node) {
+    name(node.object, Kind::kObject);
+    owner_ = node.object.text;
+    all(node.body);
+  }
   void operator()(const RobotDecl& node) {
     declare(node.name, Kind::kRobot, decl_);
+    name(node.like, Kind::kRobot);
     owner_ = node.name.text;
     all(node.body);
   }

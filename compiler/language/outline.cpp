@@ -36,6 +36,11 @@ std::vector<OutlineItem> outline(const Snapshot& snapshot, FileId id) {
       item.at = derive->name.text.span;
     } else if (std::holds_alternative<syntax::FactsDecl>(decl.node)) {
       item.kind = Kind::kFact;
+    } else if (const auto* extend = std::get_if<syntax::ExtendDecl>(&decl.node)) {
+      item.name = std::string(extend->object.text);
+      item.detail = "extend";
+      item.kind = Kind::kObject;
+      item.at = extend->object.span;
     }
     auto place = std::ranges::lower_bound(places, decl.span.begin, {},
                                           [](const Place& p) { return p.span.begin; });

@@ -82,6 +82,7 @@ void check_block(Context& context, syntax::Block block, const std::vector<Stmt>&
 
 // Which block of keywords.def a declaration has.
 syntax::Block block_of(const syntax::ObjectDecl&) { return syntax::Block::kObject; }
+syntax::Block block_of(const syntax::ExtendDecl&) { return syntax::Block::kObject; }
 syntax::Block block_of(const syntax::RobotDecl&) { return syntax::Block::kRobot; }
 syntax::Block block_of(const syntax::CameraDecl&) { return syntax::Block::kCamera; }
 syntax::Block block_of(const syntax::LightDecl&) { return syntax::Block::kLight; }
@@ -94,10 +95,10 @@ syntax::Block block_of(const syntax::DeriveDecl&) { return syntax::Block::kTask;
 syntax::Block block_of(const syntax::SuiteDecl&) { return syntax::Block::kSuite; }
 
 // A fact has one truth, and a thing is seen or is not.
-void check_claims(Context& context, const syntax::ObjectDecl& object) {
+void check_claims(Context& context, const std::vector<syntax::ObjectStmt>& body) {
   std::map<std::string_view, Span> is, maybe;
   std::optional<Span> seen, unseen;
-  for (const syntax::ObjectStmt& stmt : object.body) {
+  for (const syntax::ObjectStmt& stmt : body) {
     if (const auto* yes = std::get_if<syntax::IsStmt>(&stmt)) {
       for (const syntax::Name& fact : yes->facts) is.try_emplace(fact.text, fact.span);
     } else if (const auto* open = std::get_if<syntax::MaybeStmt>(&stmt)) {
@@ -134,7 +135,9 @@ void check_repeats(Context& context) {
   const auto check = [&](const auto& node) {
     using Node = std::decay_t<decltype(node)>;
     if constexpr (std::is_same_v<Node, syntax::PredicateDecl>) check_parameters(context, node);
-    if constexpr (std::is_same_v<Node, syntax::ObjectDecl>) check_claims(context, node);
+    if constexpr (std::is_same_v<Node, syntax::ObjectDecl> ||
+                  std::is_same_v<Node, syntax::ExtendDecl>)
+      check_claims(context, node.body);
     if constexpr (std::is_same_v<Node, syntax::RobotDecl>) {
       for (const syntax::RobotStmt& stmt : node.body) {
         if (const auto* control = std::get_if<syntax::ControlStmt>(&stmt))

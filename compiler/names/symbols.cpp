@@ -34,6 +34,9 @@ struct Collector {
   void operator()(const syntax::ObjectDecl& node) const {
     collect(symbols.objects, symbols.object_decls, diagnostics, file, decl, node);
   }
+  void operator()(const syntax::ExtendDecl& node) const {
+    symbols.extend_decls.push_back({&file, &decl, &node});
+  }
   void operator()(const syntax::RobotDecl& node) const {
     collect(symbols.robots, symbols.robot_decls, diagnostics, file, decl, node);
   }

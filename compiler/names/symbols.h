@@ -50,6 +50,7 @@ struct Symbols {
   std::vector<Declared<syntax::DatasetDecl>> dataset_decls;
   std::vector<Declared<syntax::AttributeDecl>> attribute_decls;
   std::vector<Declared<syntax::ObjectDecl>> object_decls;
+  std::vector<Declared<syntax::ExtendDecl>> extend_decls;  // whose name another declared
   std::vector<Declared<syntax::RobotDecl>> robot_decls;
   std::vector<Declared<syntax::CameraDecl>> camera_decls;
   std::vector<Declared<syntax::LightDecl>> light_decls;

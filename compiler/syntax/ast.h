@@ -439,6 +439,10 @@ struct ObjectDecl {
   std::optional<Name> like;
   std::vector<ObjectStmt> body;
 };
+struct ExtendDecl {  // `extend object plate { material ceramic }`
+  Name object;
+  std::vector<ObjectStmt> body;
+};
 
 struct UrdfStmt {
   Span span;
@@ -534,6 +538,7 @@ using RobotStmt =
     std::variant<UrdfStmt, TcpStmt, FingersStmt, ControlStmt, ReachStmt, DriveStmt, GripStmt>;
 struct RobotDecl {
   Name name;
+  std::optional<Name> like;
   std::vector<RobotStmt> body;
 };
 
@@ -1078,7 +1083,7 @@ struct Allow {  // @allow(confounded, "why")
 };
 
 using DeclNode =
-    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, RobotDecl, CameraDecl,
+    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, ExtendDecl, RobotDecl, CameraDecl,
                  LightDecl, FixtureDecl, SceneDecl, LayoutDecl, TemplateDecl, PredicateDecl,
                  MetricsDecl, RoleDecl, TaskDecl, VariantDecl, VariantsDecl, DeriveDecl, SetDecl,
                  QuestionsDecl, SuiteDecl>;

@@ -4,16 +4,29 @@
 namespace probe::syntax {
 
 DeclNode Parser::object_decl() {
-  static constexpr Rule<ObjectStmt> kRules[] = {
-#define PROBE_IN_OBJECT(word, parse, repeat) {#word, &Parser::parse},
-#include "compiler/syntax/keywords.def"
-  };
   advance();
   ObjectDecl out;
   out.name = name();
   out.like = optional_name_after("like");
-  out.body = body<ObjectStmt>(kRules, "a statement of `object`", &Parser::object_attribute);
+  out.body = object_body();
   return out;
+}
+
+DeclNode Parser::extend_decl() {
+  advance();
+  expect_word("object");
+  ExtendDecl out;
+  out.object = name();
+  out.body = object_body();
+  return out;
+}
+
+std::vector<ObjectStmt> Parser::object_body() {
+  static constexpr Rule<ObjectStmt> kRules[] = {
+#define PROBE_IN_OBJECT(word, parse, repeat) {#word, &Parser::parse},
+#include "compiler/syntax/keywords.def"
+  };
+  return body<ObjectStmt>(kRules, "a statement of `object`", &Parser::object_attribute);
 }
 
 ObjectStmt Parser::object_mesh() { return MeshStmt{{}, string()}; }

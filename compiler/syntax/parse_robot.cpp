@@ -11,6 +11,7 @@ DeclNode Parser::robot_decl() {
   advance();
   RobotDecl out;
   out.name = name();
+  out.like = optional_name_after("like");
   out.body = body<RobotStmt>(kRules, "a statement of `robot`");
   return out;
 }

@@ -138,6 +138,8 @@ class Parser {
 
   // ---- parse_object.cpp ----
   DeclNode object_decl();
+  DeclNode extend_decl();
+  std::vector<ObjectStmt> object_body();
   ObjectStmt object_mesh();
   ObjectStmt object_box();
   ObjectStmt object_density();

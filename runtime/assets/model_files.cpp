@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runtime/assets/hollow.h"
 #include "runtime/scene/collision_mesh.h"
 #include "runtime/scene/glb_writer.h"
 
@@ -104,9 +105,15 @@ Result<VisualFile> convert_visual(const std::string& path, const Vec3& scale,
 }
 
 Result<CollisionFile> convert_collision(const std::string& path, const Vec3& scale,
-                                        const scene::MeshLimits& limits, bool from_visual) {
+                                        const scene::MeshLimits& limits, bool from_visual,
+                                        const Pose& place, bool hollow) {
   PROBE_ASSIGN(scene::TriangleSoup soup, scene::load_triangles(path, scale, limits));
+  for (Vec3& p : soup.vertices) p = place.apply(p);
   CollisionFile file;
+  const double enclosed = enclosed_volume(soup);
+  if (hollow) {
+    PROBE_ASSIGN(soup, split_hollow(soup, path));
+  }
   file.extent = extent_of(soup);
   PROBE_ASSIGN(scene::CollisionShape shape, scene::make_mesh_shape(soup, path));
   if (from_visual) file.odd = "no collision mesh, its convex parts are taken from the picture mesh";
@@ -119,6 +126,7 @@ Result<CollisionFile> convert_collision(const std::string& path, const Vec3& sca
     soup = hull_triangles(shape);
   }
   file.parts = shape.parts.size();
+  if (enclosed > 0 && shape.volume > enclosed) file.filled = 1 - enclosed / shape.volume;
   file.obj = obj_text(soup);
   return file;
 }

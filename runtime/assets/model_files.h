@@ -39,12 +39,15 @@ struct CollisionFile {
   std::string obj;
   Extent extent;
   std::size_t parts = 0;
+  // How much of what is felt is not enclosed by the mesh: its hulls fill hollows. 0: not known.
+  double filled = 0;
   std::string odd;  // what had to be done about it; empty: nothing
 };
 
 // From a collision mesh, or with `from_visual` from the mesh to be seen: then one hull round
-// everything where it falls into too many pieces.
+// everything where it falls into too many pieces. `hollow`: as split_hollow() leaves it.
 Result<CollisionFile> convert_collision(const std::string& path, const Vec3& scale,
-                                        const scene::MeshLimits& limits, bool from_visual);
+                                        const scene::MeshLimits& limits, bool from_visual,
+                                        const Pose& place = {}, bool hollow = false);
 
 }  // namespace probe::assets

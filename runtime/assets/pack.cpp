@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -15,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<std::string> pack_robot(const PackOptions& options, const scene::MeshLimits& limits) {
-  if (options.scale != 1 || !options.collision.empty()) {
-    return Failure{Fault::kUsage, "a URDF says the scale and collision meshes itself",
+Result<Packed> pack_robot(const PackOptions& options, const scene::MeshLimits& limits) {
+  if (options.scale != 1 || !options.collision.empty() || !options.up.empty() || options.hollow) {
+    return Failure{Fault::kUsage, "a URDF says scale, axes and collision meshes itself",
                    options.from};
   }
   PROBE_ASSIGN(const RobotFiles robot, convert_robot(options.from, limits));
@@ -28,7 +30,69 @@ Result<std::string> pack_robot(const PackOptions& options, const scene::MeshLimi
   const std::string name = fs::path(options.from).filename().string();
   PROBE_TRY(out.write(name, robot.urdf, options.from));
   PROBE_TRY(out.finish(false));
-  return fmt::format("{} and {} meshes", name, robot.meshes.size());
+  return Packed{fmt::format("{} and {} meshes", name, robot.meshes.size()), {}, {}};
+}
+
+// The turn that brings the axis to z.
+Result<Pose> upright(const PackOptions& options) {
+  Pose pose;
+  if (options.up.empty() || options.up == "z") return pose;
+  if (options.up != "x" && options.up != "y")
+    return Failure{Fault::kUsage, "--up is one of x, y and z, not `" + options.up + "`", ""};
+  const std::string kind = lower_extension(options.from);
+  if (kind != ".obj" && kind != ".stl")
+    return Failure{Fault::kUsage, "--up is for obj and stl: a " + kind.substr(1) +
+                                      " says itself which axis points up",
+                   options.from};
+  const double half = std::sqrt(0.5);  // a quarter turn about x, or back about y
+  pose.rotation = options.up == "y" ? Quat(half, half, 0, 0) : Quat(half, 0, -half, 0);
+  return pose;
+}
+
+// To a micrometre, more than a mesh's floats are good for after a turn.
+std::string corner(const Vec3& p) {
+  const auto rounded = [](double metres) { return std::round(1e6 * metres) / 1e4 + 0.0; };
+  return fmt::format("({:.6g}cm, {:.6g}cm, {:.6g}cm)", rounded(p.x()), rounded(p.y()),
+                     rounded(p.z()));
+}
+
+// Things on a table are between a grain and the table.
+std::vector<std::string> doubts_of(const PackOptions& options, const Vec3& size,
+                                   const CollisionFile& felt) {
+  constexpr double kLargest = 2, kSmallest = 0.002;  // m
+  constexpr double kFilled = 0.25;
+  std::vector<std::string> doubts;
+  const double longest = size.maxCoeff();
+  if (longest > kLargest || longest < kSmallest) {
+    const double factor = longest > kLargest ? (longest > 20 ? 0.001 : 0.01) : 1000;
+    doubts.push_back(fmt::format("it is {:.3g} m long: with `--scale {:g}` it would be {:.3g} cm",
+                                 longest, options.scale * factor, 100 * longest * factor));
+  }
+  if (felt.filled > kFilled && !options.hollow) {
+    doubts.push_back(
+        fmt::format("what is felt is convex and fills its hollows ({:.0f} % of it is no part of the "
+                    "mesh): nothing goes in; `--hollow` splits what is open upwards",
+                    100 * felt.filled));
+  }
+  return doubts;
+}
+
+// To be pasted; what a mesh does not say is a guess to look at.
+std::string text_of(const PackOptions& options, const Extent& extent) {
+  std::string name;
+  for (const char c : fs::path(options.to).filename().string()) {
+    const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+    name += is_word ? c : '_';
+  }
+  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0)
+    name.insert(0, "my_");
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return fmt::format(
+      "object {} {{\n  mesh \"{}\"\n  box {} .. {}\n  density 500kg/m3  # a guess, as is the next "
+      "line\n  friction 0.5\n  unseen\n  name \"{}\"\n}}\n",
+      name, fs::path(options.to).filename().string(), corner(extent.min), corner(extent.max),
+      words);
 }
 
 // The mesh that is felt: the one named, or one called collision beside the one that is seen.
@@ -45,7 +109,7 @@ std::string find_collision(const PackOptions& options) {
 
 }  // namespace
 
-Result<std::string> pack_asset(const PackOptions& options) {
+Result<Packed> pack_asset(const PackOptions& options) {
   if (!(options.scale > 0) || !std::isfinite(options.scale)) {
     return Failure{Fault::kUsage, "the scale must be above 0", ""};
   }
@@ -58,23 +122,23 @@ Result<std::string> pack_asset(const PackOptions& options) {
     return pack_robot(options, limits);
   }
   const Vec3 scale(options.scale, options.scale, options.scale);
+  PROBE_ASSIGN(const Pose place, upright(options));
   const std::string name = fs::path(options.from).stem().string();
-  PROBE_ASSIGN(const VisualFile seen, convert_visual(options.from, scale, limits, name));
+  PROBE_ASSIGN(const VisualFile seen, convert_visual(options.from, scale, limits, name, place));
   const std::string felt_from = find_collision(options);
   PROBE_ASSIGN(const CollisionFile felt,
-               convert_collision(felt_from, scale, limits, felt_from == options.from));
+               convert_collision(felt_from, scale, limits, felt_from == options.from, place,
+                                 options.hollow));
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
   PROBE_TRY(out.write("visual.glb", seen.glb, options.from));
   PROBE_TRY(out.write("collision.obj", felt.obj, felt_from));
   PROBE_TRY(out.finish(false));
-  const auto corner = [](const Vec3& p) {
-    return fmt::format("({:.4g}cm, {:.4g}cm, {:.4g}cm)", 100 * p.x() + 0.0, 100 * p.y() + 0.0,
-                       100 * p.z() + 0.0);
-  };
-  return fmt::format("{} triangles, {} convex part{}, {}; box {} .. {}{}", seen.triangles,
-                     felt.parts, felt.parts == 1 ? "" : "s", size_text(seen.extent.size()),
-                     corner(seen.extent.min), corner(seen.extent.max),
-                     felt.odd.empty() ? "" : "; " + felt.odd);
+  const Vec3 size = seen.extent.size();
+  return Packed{fmt::format("{} triangles, {} convex part{}, {}; box {} .. {}{}", seen.triangles,
+                            felt.parts, felt.parts == 1 ? "" : "s", size_text(size),
+                            corner(seen.extent.min), corner(seen.extent.max),
+                            felt.odd.empty() ? "" : "; " + felt.odd),
+                doubts_of(options, size, felt), text_of(options, seen.extent)};
 }
 
 }  // namespace probe::assets

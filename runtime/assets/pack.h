@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "runtime/base/result.h"
 
@@ -13,10 +14,17 @@ struct PackOptions {
   std::string to;         // folder to make: ASSETS/objects/NAME, ASSETS/robots/NAME
   std::string collision;  // mesh file; empty: `collision.*` beside `from`, or `from` itself
   double scale = 1;       // 0.001 for millimetres; not for a URDF, which says its own
+  std::string up = {};    // "x", "y", "z": which axis of an OBJ or STL points up; empty: z
+  bool hollow = false;    // what is felt leaves the inside of a cup free (hollow.h)
 };
 
-// A sentence on what was made: size, triangles, convex parts. Fails (kAsset, kUrdf, kIo,
-// kUsage) as the readers do, and when `to` is there already.
-Result<std::string> pack_asset(const PackOptions& options);
+struct Packed {
+  std::string made;                 // a sentence: size, triangles, convex parts
+  std::vector<std::string> doubts;  // what is probably not meant, each with what helps
+  std::string text;                 // lines of a .probe text that declare it; empty for a robot
+};
+
+// Fails (kAsset, kUrdf, kIo, kUsage) as the readers do, and when `to` is there already.
+Result<Packed> pack_asset(const PackOptions& options);
 
 }  // namespace probe::assets

@@ -30,13 +30,30 @@ std::vector<std::string> to_watch(const CheckArguments& arguments, const Compile
   return paths;
 }
 
-// "1 error", "2 errors".
+// "1 error", "1,224 starts".
 std::string counted(std::size_t count, const char* thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+  std::string digits = std::to_string(count);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return fmt::format("{} {}{}", digits, thing, count == 1 ? "" : "s");
+}
+
+// How much was looked at, what was found, how long it took: a silent success looks like nothing.
+void say_outcome(const CompiledText& text, double milliseconds) {
+  const std::string found = text.errors + text.warnings == 0
+                                ? "no findings"
+                                : counted(text.errors, "error") + ", " +
+                                      counted(text.warnings, "warning");
+  say("{}, {} in {}: {}, {:.0f} ms\n", counted(text.tasks, "task"), counted(text.starts, "start"),
+      counted(text.files.size(), "file"), found, milliseconds);
+}
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 int watch_verb(const CheckArguments& arguments) {
-  using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kPoll(100);
   const Interrupt interrupt;
   FileWatch files;
@@ -48,14 +65,12 @@ int watch_verb(const CheckArguments& arguments) {
     const auto start = Clock::now();
     CompiledText text =
         compile_quietly(arguments.files, arguments.assets, "", false, arguments.json);
-    const double milliseconds =
-        std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    const double milliseconds = milliseconds_since(start);
     files.watch(to_watch(arguments, text));
     // An editor's own files come and go in the folder; only news are printed.
     if (first || edited || text.said != last.said || text.exit != last.exit) {
       print_diagnostics(text, arguments.json);
-      say("{}, {} in {}, {:.1f} ms\n", counted(text.errors, "error"),
-          counted(text.warnings, "warning"), counted(text.files.size(), "file"), milliseconds);
+      say_outcome(text, milliseconds);
     }
     if (first) say("watching; Ctrl-C ends\n");
     first = false;
@@ -75,11 +90,10 @@ int watch_verb(const CheckArguments& arguments) {
 }
 
 int check_verb(const CheckArguments& arguments) {
+  const auto start = Clock::now();
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json);
-  if (text.errors + text.warnings > 0) {
-    say("{}, {}\n", counted(text.errors, "error"), counted(text.warnings, "warning"));
-  }
+  if (!text.files.empty()) say_outcome(text, milliseconds_since(start));
   return text.exit;
 }
 

@@ -43,6 +43,8 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   text.unused_phrases = std::move(compiled->unused_phrases);
   text.referring = std::move(compiled->referring);
   text.own_suites = std::move(compiled->own_suites);
+  text.tasks = compiled->tasks;
+  text.starts = compiled->starts;
   return text;
 }
 

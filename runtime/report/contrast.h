@@ -53,6 +53,7 @@ class PairRows {
   // The row of the start that was added last, or of a `fresh` one.
   stats::PairTable& at(int task, std::uint32_t place, int group, bool fresh);
   bool empty() const { return rows_.empty(); }
+  const std::vector<stats::PlacedPairs>& rows() const { return rows_; }  // without numbered starts
   Contrast contrast() const;
 
  private:

@@ -387,8 +387,8 @@ Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
   return contrast;
 }
 
-Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
-                         const std::vector<int>& tasks) {
+PairRows policy_pairs(const Benchmark& benchmark, int a, int b, int metric,
+                      const std::vector<int>& tasks) {
   PairRows pairs;
   Fresh is_fresh;
   for (const int task : tasks) {
@@ -403,7 +403,12 @@ Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
                     last = start;
                   });
   }
-  return pairs.contrast();
+  return pairs;
+}
+
+Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
+                         const std::vector<int>& tasks) {
+  return policy_pairs(benchmark, a, b, metric, tasks).contrast();
 }
 
 Tables make_tables(const Benchmark& benchmark) { return Maker(benchmark).make(); }

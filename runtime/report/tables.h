@@ -97,6 +97,8 @@ std::optional<Estimate> estimate(const Benchmark& benchmark, int policy, int met
 Contrast variant_contrast(const Benchmark& benchmark, int policy, int metric, int task);
 Contrast category_contrast(const Benchmark& benchmark, int policy, int metric,
                            const std::vector<int>& tasks, int& left_out);
+PairRows policy_pairs(const Benchmark& benchmark, int a, int b, int metric,
+                      const std::vector<int>& tasks);
 Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
                          const std::vector<int>& tasks);
 

@@ -64,6 +64,23 @@ TEST_CASE("object: `like` copies every statement and a statement replaces what w
       analyze_with_suite("object a like b {}\nobject b like a {}\n")->codes().starts_with("P0207"));
 }
 
+TEST_CASE("extend: an object of another file is known more of, and so are its copies") {
+  const auto a = clean(
+      "attribute material { wood, steel }\nfacts { heavy }\nobject o like red { name \"other\" }\n"
+      "extend object red { material wood; is heavy; phrase m appearance \"wooden block\" means material "
+      "wood }\n");
+  for (const char* name : {"red", "o"}) {
+    const sema::Object& object = named(a->model.objects, name);
+    CHECK(object.values.back() == std::vector<std::uint32_t>{0});
+    CHECK(object.facts.back() == sema::Truth::kYes);
+    REQUIRE(object.find_phrase("m") != nullptr);
+    CHECK(object.find_phrase("m")->text.text == "wooden block");
+  }
+  const auto wrong = analyze_with_suite("extend object red { color blue }");
+  CHECK(wrong->codes() == "P0203");
+  CHECK(wrong->underlined() == "color blue");
+}
+
 TEST_CASE("object_st: every statement of an object has its value") {
   const auto a = clean(
       "dataset other \"Other\"\nfacts { wet, loud }\n"
@@ -157,6 +174,27 @@ variant v of red_on_tray { scene other }
   CHECK(plan.text(plan.drives(robot)[2].joint) == "r");
   CHECK(plan.drives(robot)[2].damping == 200);
   CHECK(plan.drives(robot)[0].limit == 20);
+}
+
+TEST_CASE("robot: `like` copies every statement, and a drive replaces that of its joints alone") {
+  const Built built(R"(
+robot second like arm { control ee_delta_pose 10Hz; drive r stiffness 900N/m damping 200Ns/m limit 60N }
+camera second_eye { mount second.base at (0cm, 0cm, 1m) look (1, 0, -1); image 64 x 48; lens 30px, 30px, 32px, 24px }
+scene other like bench { robot second at (50cm, 0cm) yaw 180deg; camera second_eye }
+variant v of red_on_tray { scene other }
+)");
+  const plan::Plan& plan = built.plan();
+  const plan::RobotRecord& copy = plan.robots()[plan.scenes()[built.task("v").scene].robot];
+  const plan::RobotRecord& arm = plan.robots()[plan.scenes()[built.task("red_on_tray").scene].robot];
+  CHECK(plan.text(copy.name) == "second");
+  CHECK(copy.control_hz == 10);
+  CHECK(copy.grip_open == arm.grip_open);
+  REQUIRE(copy.drives.count == arm.drives.count);
+  for (std::size_t i = 0; i < arm.drives.count; ++i) {
+    const auto &of_copy = plan.drives(copy)[i], &of_arm = plan.drives(arm)[i];
+    CHECK(plan.text(of_copy.joint) == plan.text(of_arm.joint));
+    CHECK((of_copy.stiffness == of_arm.stiffness) == (plan.text(of_arm.joint) != "r"));
+  }
 }
 
 TEST_CASE("control_st: what the plan holds of a control law, of gears and of air") {

@@ -22,6 +22,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_why(program, exit);
   add_report(program, exit);
   add_compare(program, exit);
+  add_gate(program, exit);
   add_demos(program, exit);
   add_export(program, exit);
   add_assets(program, exit);

@@ -47,6 +47,9 @@ void add_pack(Verb assets, int& exit) {
   pack.add_option("--scale", options->scale, "metres a unit of the file (default: 1)");
   pack.add_option("--collision", options->collision,
                   "mesh of convex parts (default: collision.* beside FILE, else FILE itself)");
+  pack.add_option("--up", options->up, "axis of an obj or stl that points up (default: z)");
+  pack.add_flag("--hollow", options->hollow,
+                "what is felt leaves the inside of a cup, bowl or tray free");
   pack.refuse_empty_values();
   pack.callback([options, &exit] {
     const auto packed = assets::pack_asset(*options);
@@ -54,7 +57,9 @@ void add_pack(Verb assets, int& exit) {
       exit = report(packed.failure());
       return;
     }
-    put("{}: {}\n", options->to, *packed);
+    put("{}: {}\n", options->to, packed->made);
+    for (const std::string& doubt : packed->doubts) say("note: {}\n", doubt);
+    if (!packed->text.empty()) put("{}", packed->text);
     exit = kFine;
   });
 }

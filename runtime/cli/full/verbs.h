@@ -22,6 +22,7 @@ void add_judge(Verb app, int& exit);
 void add_why(Verb app, int& exit);
 void add_report(Verb app, int& exit);
 void add_compare(Verb app, int& exit);
+void add_gate(Verb app, int& exit);
 void add_demos(Verb app, int& exit);
 void add_export(Verb app, int& exit);
 void add_assets(Verb app, int& exit);

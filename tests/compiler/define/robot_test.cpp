@@ -59,3 +59,41 @@ TEST_CASE("fingers open apart, each as its joint moves it") {
         std::string::npos);
   CHECK(refused(same + "fingers left opens +y, right opens -y }") == "right");
 }
+
+TEST_CASE("a copy of a robot replaces what it says, joint by joint, and keeps the order of the joints") {
+  const auto a = analyze_with_suite(
+      "robot stiff like arm { drive l stiffness 2000N/m damping 300Ns/m limit 70N }\n"
+      "robot slow like stiff { control ee_delta_pose 2Hz; drive waist stiffness 50Nm/rad damping "
+      "5Nms/rad limit 9Nm }");
+  CHECK_MESSAGE(a->codes() == "", a->said());
+  const auto& robots = a->model.robots;
+  REQUIRE(robots.size() == 3);
+  const auto &arm = robots.begin()[0], &stiff = robots.begin()[1], &slow = robots.begin()[2];
+  REQUIRE(stiff.drives.size() == arm.drives.size());
+  REQUIRE(slow.drives.size() == arm.drives.size());
+  for (std::size_t i = 0; i < arm.drives.size(); ++i) {
+    CHECK(stiff.drives[i].joint.text == arm.drives[i].joint.text);
+    CHECK(slow.drives[i].joint.text == arm.drives[i].joint.text);
+    const bool is_l = arm.drives[i].joint.text == "l", is_waist = arm.drives[i].joint.text == "waist";
+    CHECK((stiff.drives[i].stiffness == arm.drives[i].stiffness) == !is_l);
+    CHECK((slow.drives[i].stiffness == stiff.drives[i].stiffness) == !is_waist);
+  }
+  CHECK(slow.control_hz == 2);
+  CHECK(stiff.control_hz == arm.control_hz);
+  CHECK(slow.urdf.text == arm.urdf.text);
+}
+
+TEST_CASE("a copy of a robot is told where what it copied does not fit") {
+  // The drive is the copied robot's, whose law wants what this one forbids.
+  const auto other = analyze_with_suite("robot odd like arm { fingers none }");
+  CHECK(other->said().find("`grip` of a robot that has `fingers none`") != std::string::npos);
+  CHECK(other->said().find("copied by `odd`") != std::string::npos);
+  const auto twice = analyze_with_suite(
+      "robot odd like arm { drive l stiffness 2000N/m damping 300Ns/m limit 70N\n"
+      "drive l stiffness 1000N/m damping 300Ns/m limit 70N }");
+  CHECK(twice->said().find("joint `l` is driven twice") != std::string::npos);
+  const auto circle = analyze_with_suite("robot a like b { }\nrobot b like a { }");
+  CHECK_MESSAGE(circle->codes() == "P0207", circle->said());
+  const auto nobody = analyze_with_suite("robot a like nobody { control ee_delta_pose 2Hz }");
+  CHECK_MESSAGE(nobody->codes() == "P0201", nobody->said());
+}

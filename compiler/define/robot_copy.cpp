@@ -1,0 +1,43 @@
+#include "compiler/define/robot_copy.h"
+
+#include <algorithm>
+
+namespace probe::sema {
+
+RobotText over(const RobotText& copied, const syntax::RobotDecl& own) {
+  RobotText out = copied;
+  const std::size_t inherited = out.drives.size();
+  std::vector<bool> replaced(inherited, false);
+  std::size_t statements = out.statements.size();
+  for (const syntax::RobotStmt& stmt : own.body) {
+    const auto* drive = std::get_if<syntax::DriveStmt>(&stmt);
+    if (drive == nullptr) {
+      const auto same = std::find_if(
+          out.statements.begin(), out.statements.begin() + static_cast<std::ptrdiff_t>(statements),
+          [&](const syntax::RobotStmt* known) { return known->index() == stmt.index(); });
+      if (same == out.statements.begin() + static_cast<std::ptrdiff_t>(statements)) {
+        out.statements.push_back(&stmt);
+      } else {
+        out.statements.erase(same);
+        --statements;
+        out.statements.push_back(&stmt);
+      }
+      continue;
+    }
+    for (const syntax::Name& joint : drive->joints) {
+      std::size_t place = 0;
+      while (place < inherited &&
+             (replaced[place] || out.drives[place].joint->text != joint.text))
+        ++place;
+      if (place == inherited) {
+        out.drives.push_back({drive, &joint});
+      } else {
+        out.drives[place] = {drive, &joint};
+        replaced[place] = true;
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,89 @@
+// vlaprobe gate
+#include "runtime/report/gate.h"
+
+#include <charconv>
+#include <span>
+
+#include "runtime/assets/output_file.h"
+#include "runtime/base/file.h"
+#include "runtime/base/say.h"
+#include "runtime/cli/full/verbs.h"
+
+namespace probe::cli {
+namespace {
+
+struct GateArguments {
+  std::string now, before, allow = "0%", error = "5%", junit, markdown;
+  report::GateOptions options;
+  bool json = false, decided = false;
+};
+
+// "2%" or "0.02".
+Result<double> share(const std::string& flag, const std::string& text) {
+  std::string_view digits = text;
+  const bool percent = digits.ends_with('%');
+  if (percent) digits.remove_suffix(1);
+  while (percent && digits.ends_with(' ')) digits.remove_suffix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size())
+    return Failure{Fault::kUsage, flag + " takes a share such as 2% or 0.02, not `" + text + "`", ""};
+  return percent ? value / 100 : value;
+}
+
+Status write(const std::string& path, const std::string& text) {
+  return write_file(path, std::as_bytes(std::span(text)));
+}
+
+Result<report::Gate> measured(GateArguments& arguments) {
+  PROBE_ASSIGN(arguments.options.allow, share("--allow", arguments.allow));
+  PROBE_ASSIGN(arguments.options.error, share("--error", arguments.error));
+  for (const std::string& out : {arguments.junit, arguments.markdown})
+    PROBE_TRY(assets::check_output(out, {}));
+  PROBE_ASSIGN(report::Gate gate,
+               report::gate_folders(arguments.now, arguments.before, arguments.options));
+  if (!arguments.junit.empty()) PROBE_TRY(write(arguments.junit, to_junit(gate)));
+  if (!arguments.markdown.empty()) PROBE_TRY(write(arguments.markdown, to_markdown(gate)));
+  return gate;
+}
+
+int gate_verb(GateArguments& arguments) {
+  const auto gate = measured(arguments);
+  if (!gate) return report(gate.failure());
+  if (arguments.json) {
+    put("{}\n", to_json(*gate).dump(1));
+  } else {
+    put("{}", to_text(*gate));
+  }
+  if (gate->is_worse() || (arguments.decided && !gate->is_decided())) return kUser;
+  return kFine;
+}
+
+}  // namespace
+
+void add_gate(Verb app, int& exit) {
+  auto arguments = std::make_shared<GateArguments>();
+  Verb verb = app.add_subcommand(
+      "gate", "may this run's policy take the place of that one's: exit 1 only for a drop that the "
+              "data show");
+  verb.footer("example: vlaprobe gate runs/new --against runs/old --allow 2% --junit gate.xml");
+  verb.add_option("NEW", arguments->now, "results folder").required();
+  verb.add_option("--against", arguments->before, "results folder").required();
+  verb.add_option("--allow", arguments->allow, "how many more episodes may fail (default: 0%)");
+  verb.add_option("--metric", arguments->options.metric, "what is held to it (default: success)");
+  verb.add_option("--error", arguments->error,
+                  "chance of calling an allowed drop too large (default: 5%)");
+  verb.add_flag("--categories", arguments->options.categories, "each of them is held to it, too");
+  verb.add_option("--sets", arguments->options.sets,
+                  "A,B,...: sets of the plan that are the categories")
+      .delimiter(',');
+  verb.add_flag("--decided", arguments->decided,
+                "exit 1 as well where the data do not show that it is no more");
+  verb.add_option("--junit", arguments->junit, "JUnit XML file to write");
+  verb.add_option("--markdown", arguments->markdown, "Markdown file to write");
+  verb.add_flag("--json", arguments->json, "the numbers as a JSON object");
+  verb.refuse_empty_values();
+  verb.callback([arguments, &exit] { exit = gate_verb(*arguments); });
+}
+
+}  // namespace probe::cli
