@@ -95,6 +95,8 @@ class Emitter {
                    plan::BodyKind kind, std::uint32_t index);
   void add_camera(sema::CameraId id);
   void add_light(sema::LightId id);
+  // P0304 where the task's light is of corners and a camera asks for what that law does not have.
+  void check_shading(const sema::Task& task, const std::vector<sema::View>& views);
   std::uint32_t add_photo(const std::optional<sema::Spelled>& overlay, AssetOwner owner);
   void add_scene(sema::SceneId id);
 
@@ -166,6 +168,7 @@ class Emitter {
   std::map<std::pair<sema::FixtureId, double>, std::uint32_t> fixtures_;  // by lift
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
+  std::set<std::pair<sema::LightId, sema::CameraId>> shading_told_;  // by check_shading
   std::vector<lower::Program> programs_;
   std::map<std::vector<std::uint32_t>, std::uint32_t> programs_by_shape_;  // lower::shape_of
   // Program, horizon, control rate, room.

@@ -163,6 +163,7 @@ void Emitter::add_task(const sema::Task& task) {
   const std::vector<sema::View> views = views_of(model_, task);
   for (const sema::View& view : views) add_camera(view.camera);
   add_light(light_of(model_, task));
+  check_shading(task, views);
   const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
   if (bodies.size() > plan::kMaxBodies) {
     diagnostics_.report(Situation::kTooManyBodies,

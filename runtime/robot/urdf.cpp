@@ -198,6 +198,15 @@ Result<RobotModel> to_model(const urdf::ModelInterface& from, const UrdfText& te
 
 }  // namespace
 
+bool RobotModel::is_fixed(int link) const {
+  while (links[static_cast<std::size_t>(link)].parent_joint >= 0) {
+    const auto joint = static_cast<std::size_t>(links[static_cast<std::size_t>(link)].parent_joint);
+    if (joints[joint].kind != JointKind::kFixed) return false;
+    link = joints[joint].parent_link;
+  }
+  return true;
+}
+
 int RobotModel::find_link(std::string_view wanted) const {
   for (std::size_t i = 0; i < links.size(); ++i) {
     if (links[i].name == wanted) return int(i);

@@ -61,6 +61,8 @@ struct RobotModel {
   int root = 0;  // link index
 
   int find_link(std::string_view name) const;   // -1 if absent
+  // Its pose in the base frame does not depend on joints: none on the way moves.
+  bool is_fixed(int link) const;
   int find_joint(std::string_view name) const;  // -1 if absent
 };
 

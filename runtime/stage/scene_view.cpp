@@ -16,17 +16,6 @@
 namespace probe::stage {
 namespace {
 
-// The mount link's pose in the base frame does not depend on q: no joint on the way moves.
-bool is_fixed(const robot::RobotModel& model, int link) {
-  while (model.links[static_cast<std::size_t>(link)].parent_joint >= 0) {
-    const auto joint =
-        static_cast<std::size_t>(model.links[static_cast<std::size_t>(link)].parent_joint);
-    if (model.joints[joint].kind != robot::JointKind::kFixed) return false;
-    link = model.joints[joint].parent_link;
-  }
-  return true;
-}
-
 // In the frame of its mount.
 Result<render::Camera> make_camera(const plan::Plan& plan, const plan::CameraRecord& record) {
   render::Camera camera;
@@ -259,7 +248,7 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   const std::string where = "camera `" + std::string(plan.text(camera.name)) + "`";
   if (mount < 0)
     return Failure{Fault::kRender, "the robot has no link `" + mount_name + "`", where};
-  if (!is_fixed(model, mount)) eye.moving_mount = mount;
+  if (!model.is_fixed(mount)) eye.moving_mount = mount;
   trees_.front().place(plan.joints(scene));
   eye.mount = robot().link(mount);
   PROBE_ASSIGN(eye.written, make_camera(plan, camera));

@@ -391,6 +391,16 @@ TEST_CASE("light_st, lamp: spots, suns and a headlight light corners of triangle
   CHECK(codes("light l { sun (0, 0, -1) power 1 specular 1 }") == "P0304");
   CHECK(codes("light l { sun (0, 0, -1) power 1 shadow; shading vertex }") == "P0304");
   CHECK(codes("light l { ambient 1 occlusion 4; shading vertex }") == "P0304");
+  // Nor has it a photo.
+  write_text(asset_root() + "/scenes/photo.png", "photo");
+  const auto photographed = [](const std::string& lamps) {
+    return failed_build("light l { " + lamps +
+                        " }\nscene seen like bench { camera eye overlay \"photo.png\"; light l }\n"
+                        "variant v of red_on_tray { scene seen }\n");
+  };
+  const std::string said = photographed("headlight power 0.4; shading vertex");
+  CHECK_MESSAGE(said.starts_with("error[P0304]: `shading vertex` has no photo"), said);
+  CHECK(photographed("ambient 0.4") == "");
 }
 
 TEST_CASE(
