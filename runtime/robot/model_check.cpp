@@ -1,6 +1,7 @@
 // One function a rule.
 #include "runtime/robot/model_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -113,15 +114,16 @@ Status check_meshes(const RobotModel& model, const Link& link, const std::vector
 }
 
 Status check_primitives(const RobotModel& model, const Link& link) {
-  for (const Primitive& primitive : link.primitives) {
-    if (is_finite(primitive.origin) && primitive.half.allFinite() &&
-        primitive.half.minCoeff() > 0) {
-      continue;
-    }
-    return wrong(model,
-                 fmt::format("link `{}` has a collision shape of a size that is not positive "
-                             "or a place that is not finite",
-                             link.name));
+  const auto is_good = [](const Primitive& primitive) {
+    return is_finite(primitive.origin) && primitive.half.allFinite() &&
+           primitive.half.minCoeff() > 0;
+  };
+  const bool draws = std::ranges::all_of(
+      link.drawn, [&](const DrawnPrimitive& drawn) { return is_good(drawn.shape); });
+  if (!draws || !std::ranges::all_of(link.primitives, is_good)) {
+    return wrong(model, fmt::format("link `{}` has a {} shape of a size that is not positive "
+                                    "or a place that is not finite",
+                                    link.name, draws ? "collision" : "visual"));
   }
   return {};
 }

@@ -77,33 +77,43 @@ std::optional<Primitive> to_primitive(const urdf::Geometry* geometry, const Pose
   return std::nullopt;
 }
 
-// Meshes into `meshes`; other shapes into `primitives`, or refused where there is no such list:
-// they would otherwise be dropped silently.
+// Its material's, where the file gives it one.
+Vec3 color_of(const urdf::Visual& visual) {
+  if (visual.material == nullptr) return DrawnPrimitive{}.color;
+  const urdf::Color& color = visual.material->color;
+  return Vec3(color.r, color.g, color.b).cwiseMax(0).cwiseMin(1);
+}
+
+void add_primitive(const urdf::Visual& from, const Primitive& shape, Link& link) {
+  link.drawn.push_back({shape, color_of(from)});
+}
+void add_primitive(const urdf::Collision&, const Primitive& shape, Link& link) {
+  link.primitives.push_back(shape);
+}
+
+// Meshes into `meshes`, other shapes into the link's own lists.
 template <typename Elements>
-Status add_shapes(const Elements& elements, const std::vector<Quat>& turns, const std::string& link,
-                  const std::string& path, std::vector<MeshRef>* meshes,
-                  std::vector<Primitive>* primitives) {
+Status add_shapes(const Elements& elements, const std::vector<Quat>& turns, const std::string& path,
+                  Link& link, std::vector<MeshRef>& meshes) {
   if (elements.size() != turns.size()) {
-    return Failure{Fault::kUrdf, fmt::format("link `{}` has a shape that was not understood", link),
-                   path};
+    return Failure{Fault::kUrdf,
+                   fmt::format("link `{}` has a shape that was not understood", link.name), path};
   }
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const urdf::Geometry* geometry = elements[i]->geometry.get();
     const Pose origin{to_vec(elements[i]->origin.position), turns[i]};
     if (const auto* mesh = dynamic_cast<const urdf::Mesh*>(geometry)) {
-      meshes->push_back(to_mesh(*mesh, origin));
+      meshes.push_back(to_mesh(*mesh, origin));
       continue;
     }
     const std::optional<Primitive> primitive = to_primitive(geometry, origin);
-    if (primitive && primitives != nullptr) {
-      primitives->push_back(*primitive);
-      continue;
+    if (!primitive) {
+      return Failure{
+          Fault::kUrdf,
+          fmt::format("link `{}` has a shape that is no mesh, box, sphere or cylinder", link.name),
+          path};
     }
-    return Failure{Fault::kUrdf,
-                   fmt::format("link `{}` has a visual shape that is no mesh; boxes, spheres and "
-                               "cylinders are read as collision shapes only",
-                               link),
-                   path};
+    add_primitive(*elements[i], *primitive, link);
   }
   return {};
 }
@@ -121,9 +131,8 @@ Result<Link> to_link(const urdf::Link& from, const LinkText& text, const std::st
     const Mat3 turned = turn * inertia * turn.transpose();
     link.inertia = 0.5 * (turned + turned.transpose());
   }
-  PROBE_TRY(add_shapes(from.visual_array, text.visuals, link.name, path, &link.visuals, nullptr));
-  PROBE_TRY(add_shapes(from.collision_array, text.collisions, link.name, path, &link.collisions,
-                       &link.primitives));
+  PROBE_TRY(add_shapes(from.visual_array, text.visuals, path, link, link.visuals));
+  PROBE_TRY(add_shapes(from.collision_array, text.collisions, path, link, link.collisions));
   return link;
 }
 

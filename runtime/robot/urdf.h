@@ -25,6 +25,12 @@ struct Primitive {
   Pose origin;               // its frame in the link frame
 };
 
+// One that is drawn, in a colour (sRGB, 0 to 1).
+struct DrawnPrimitive {
+  Primitive shape;
+  Vec3 color = Vec3::Constant(0.7);
+};
+
 struct Link {
   std::string name;
   int parent_joint = -1;               // index into joints, -1 for the root
@@ -33,6 +39,7 @@ struct Link {
   Mat3 inertia = Mat3::Zero();         // about the centre of mass, link frame axes
   std::vector<MeshRef> visuals;
   std::vector<MeshRef> collisions;
+  std::vector<DrawnPrimitive> drawn;  // visuals too
   std::vector<Primitive> primitives;  // collisions too
   bool can_collide() const { return !collisions.empty() || !primitives.empty(); }
 };

@@ -16,6 +16,7 @@
 #include "runtime/scene/hull.h"
 #include "runtime/scene/image.h"
 #include "runtime/scene/mesh_cache.h"
+#include "runtime/scene/shape_mesh.h"
 #include "runtime/stage/backdrop.h"
 
 namespace probe::stage {
@@ -302,6 +303,12 @@ class SharedAssets::Loader {
         visual.origin = ref.origin;
         PROBE_ASSIGN(visual.mesh, scene::shared_mesh(folder + ref.path, ref.scale, limits()));
         parts.visuals.push_back(std::move(visual));
+      }
+      for (const robot::DrawnPrimitive& drawn : link.drawn) {
+        parts.visuals.push_back(
+            {.link = static_cast<int>(i),
+             .origin = drawn.shape.origin,
+             .mesh = std::make_shared<const scene::Mesh>(scene::shape_mesh(drawn))});
       }
       parts.shapes.emplace_back();
       if (link.can_collide()) {

@@ -315,12 +315,27 @@ TEST_CASE("a primitive without extent is refused by its link's name") {
   }
 }
 
-TEST_CASE("a visual shape that is no mesh is refused rather than dropped") {
-  CHECK(load_message(two_links(revolute(kLimit), std::string(kBody) +
-                                                     "<visual><geometry><box size='1 1 1'/>"
-                                                     "</geometry></visual>")) ==
-        "link `b` has a visual shape that is no mesh; boxes, spheres and cylinders are read as "
-        "collision shapes only");
+TEST_CASE("boxes, spheres and cylinders that are drawn are read with their colour") {
+  const TextFile file(
+      two_links(revolute(kLimit),
+                std::string(kBody) +
+                    "<visual><origin xyz='0 0 0.5'/><geometry><box size='1 2 4'/></geometry>"
+                    "<material name='red'><color rgba='1 0 0.5 1'/></material></visual>"
+                    "<visual><geometry><cylinder radius='0.1' length='0.4'/></geometry></visual>"));
+  const auto model = load_urdf(file.path());
+  REQUIRE_MESSAGE(model.ok(), (model.ok() ? "" : to_text(model.failure())));
+  const Link& link = model->links[1];
+  CHECK(link.visuals.empty());
+  REQUIRE(link.drawn.size() == 2);
+  CHECK(link.drawn[0].shape.half == Vec3(0.5, 1, 2));
+  CHECK(link.drawn[0].shape.origin.position == Vec3(0, 0, 0.5));
+  CHECK(link.drawn[0].color == Vec3(1, 0, 0.5));
+  CHECK(link.drawn[1].shape.half == Vec3(0.1, 0.1, 0.2));
+  CHECK(link.drawn[1].color == Vec3(0.7, 0.7, 0.7));
+  CHECK_FALSE(link.can_collide());
+}
+
+TEST_CASE("a visual shape that is nothing is refused rather than dropped") {
   CHECK(!load_message(two_links(revolute(kLimit), std::string(kBody) +
                                                       "<visual><geometry><mesh/></geometry>"
                                                       "</visual>"))

@@ -19,7 +19,8 @@ inline std::string gantry_urdf() {
   };
   const auto box = [](const std::string& xyz, const std::string& size) {
     return "<collision><origin xyz='" + xyz + "'/><geometry><box size='" + size +
-           "'/></geometry></collision>";
+           "'/></geometry></collision><visual><origin xyz='" + xyz + "'/><geometry><box size='" +
+           size + "'/></geometry></visual>";
   };
   const auto joint = [](const std::string& name, const std::string& type, const std::string& parent,
                         const std::string& child, const std::string& xyz, const std::string& axis,
