@@ -393,8 +393,8 @@ TEST_CASE("light_st, lamp: spots, suns and a headlight light corners of triangle
   CHECK(codes("light l { ambient 1 occlusion 4; shading vertex }") == "P0304");
   // Nor has it a photo.
   write_text(asset_root() + "/scenes/photo.png", "photo");
-  const auto photographed = [](const std::string& lamps) {
-    return failed_build("light l { " + lamps +
+  const auto photographed = [](const std::string& lit) {
+    return failed_build("light l { " + lit +
                         " }\nscene seen like bench { camera eye overlay \"photo.png\"; light l }\n"
                         "variant v of red_on_tray { scene seen }\n");
   };

@@ -241,7 +241,7 @@ TEST_CASE("a watched suite is checked again when a file it uses changes or is re
   write_file(box / "own.probe", "use \"intact.probe\"\nuse \"mine.probe\"\n");
   write_file(box / "mine.probe", "task mine like carrot_on_plate { horizon 70 steps }\n");
   Watching watching(box, "own.probe");
-  REQUIRE(watching.says("0 errors,"));
+  REQUIRE(watching.says("no findings,"));
   REQUIRE(watching.says("watching; Ctrl-C ends"));
 
   write_file(box / "mine.probe", "task mine like carot_on_plate { horizon 70 steps }\n");
@@ -251,12 +251,12 @@ TEST_CASE("a watched suite is checked again when a file it uses changes or is re
   // As editors do: a new file in the place of the old one.
   write_file(box / "mine.probe.new", "task mine like carrot_on_plate { horizon 80 steps }\n");
   fs::rename(box / "mine.probe.new", box / "mine.probe");
-  CHECK(watching.says("0 errors,"));
+  CHECK(watching.says("no findings,"));
 
   // A file that is not there yet is seen when it comes.
   fs::rename(box / "mine.probe", box / "away");
   CHECK(watching.says("mine.probe"));
   fs::rename(box / "away", box / "mine.probe");
-  CHECK(watching.says("0 errors,"));
+  CHECK(watching.says("no findings,"));
   CHECK(watching.interrupt() == 0);
 }
