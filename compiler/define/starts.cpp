@@ -431,6 +431,7 @@ std::size_t roles_filled(const Task& task) {
 bool start_at_same_places(const Task& a, const Task& b) {
   const std::size_t shared = std::min(roles_filled(a), roles_filled(b));
   return std::ranges::equal(a.starts, b.starts, [&](const Start& p, const Start& q) {
+    if (std::min(p.placed.size(), q.placed.size()) < shared) return false;
     return std::equal(p.placed.begin(), p.placed.begin() + static_cast<std::ptrdiff_t>(shared),
                       q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
                         return plan::place_at(x.x, x.y) == plan::place_at(y.x, y.y);

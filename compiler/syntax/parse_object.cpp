@@ -63,7 +63,7 @@ ObjectStmt Parser::object_mass() {
 ObjectStmt Parser::object_damping() {
   ObjectDampingStmt out;
   out.shift = quantity();
-  if (at(TokenKind::kNumber)) out.turn = quantity();
+  if (at(TokenKind::kNumber) || at(TokenKind::kMinus)) out.turn = quantity();
   return out;
 }
 

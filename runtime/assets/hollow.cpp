@@ -164,7 +164,7 @@ Result<scene::TriangleSoup> split_hollow(const scene::TriangleSoup& surface,
   }
   const HalfSpace below{Vec3::UnitZ(), inside.floor};
   const Piece bottom = piece_of(surface, {&below, 1}, name);
-  if (!bottom.corners.empty()) add_hull(bottom.corners, name, out);
+  bool is_whole = bottom.corners.empty() || add_hull(bottom.corners, name, out);
   // A hair above the floor: what lies in the plane of the cut is the floor's, and reaches the middle.
   const double foot = inside.floor + 1e-5;
   for (int i = 0; i < kSectors; ++i) {
@@ -186,14 +186,16 @@ Result<scene::TriangleSoup> split_hollow(const scene::TriangleSoup& surface,
       slices.push_back(piece_of(surface, slice, name));
       sum += slices.back().volume;
     }
-    if (!whole.corners.empty() && whole.volume <= 1.1 * sum) {
-      add_hull(whole.corners, name, out);
+    // Where slices are too thin to be solid the sector is.
+    if (!whole.corners.empty() && (whole.volume <= 1.1 * sum || sum == 0)) {
+      is_whole = add_hull(whole.corners, name, out) && is_whole;
       continue;
     }
     for (const Piece& slice : slices) {
-      if (!slice.corners.empty()) add_hull(slice.corners, name, out);
+      if (!slice.corners.empty()) is_whole = add_hull(slice.corners, name, out) && is_whole;
     }
   }
+  if (!is_whole) return Failure{Fault::kAsset, "a piece of it has no hull", name};
   if (out.indices.empty()) return Failure{Fault::kAsset, "nothing solid is left of it", name};
   return out;
 }

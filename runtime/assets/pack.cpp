@@ -79,8 +79,10 @@ std::vector<std::string> doubts_of(const PackOptions& options, const Vec3& size,
 
 // To be pasted; what a mesh does not say is a guess to look at.
 std::string text_of(const PackOptions& options, const Extent& extent) {
+  fs::path folder = fs::path(options.to).lexically_normal();
+  if (folder.filename().empty()) folder = folder.parent_path();  // a slash at the end
   std::string name;
-  for (const char c : fs::path(options.to).filename().string()) {
+  for (const char c : folder.filename().string()) {
     const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
     name += is_word ? c : '_';
   }
@@ -91,7 +93,7 @@ std::string text_of(const PackOptions& options, const Extent& extent) {
   return fmt::format(
       "object {} {{\n  mesh \"{}\"\n  box {} .. {}\n  density 500kg/m3  # a guess, as is the next "
       "line\n  friction 0.5\n  unseen\n  name \"{}\"\n}}\n",
-      name, fs::path(options.to).filename().string(), corner(extent.min), corner(extent.max),
+      name, folder.filename().string(), corner(extent.min), corner(extent.max),
       words);
 }
 

@@ -46,7 +46,6 @@ class PutUnder {
   std::vector<Pose> failed_;  // holds, in the source's frame
   ToolWay way_;
   Pose taken_, last_;  // of the source in the tool's frame; of the tool
-  double bottom_ = 0;  // of the source, where it shall stand
   bool is_done_ = false;
   std::string lack_;
 };

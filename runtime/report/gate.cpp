@@ -118,9 +118,10 @@ Measured measure(const Benchmark& benchmark, int metric, const GateOptions& opti
   return out;
 }
 
-void decide(std::vector<Measured>& rows, std::size_t first, const GateOptions& options) {
+// All rows are one family: whichever is falsely called worse, it is one error.
+void decide(std::vector<Measured>& rows, const GateOptions& options) {
   std::vector<double> allowed, more, worst;
-  for (std::size_t i = first; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     allowed.push_back(rows[i].row.p);
     more.push_back(rows[i].p_of_more);
     worst.push_back(rows[i].p_at_worst);
@@ -128,13 +129,13 @@ void decide(std::vector<Measured>& rows, std::size_t first, const GateOptions& o
   allowed = stats::holm(allowed);
   more = stats::holm(more);
   worst = stats::holm(worst);
-  for (std::size_t i = first; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     GateRow& row = rows[i].row;
-    row.p = allowed[i - first];
-    rows[i].p_at_worst = worst[i - first];
+    row.p = allowed[i];
+    rows[i].p_at_worst = worst[i];
     if (row.p <= options.error) {
       row.verdict = Verdict::kWorse;
-    } else if (more[i - first] <= options.error) {
+    } else if (more[i] <= options.error) {
       row.verdict = Verdict::kNotWorse;
     }
   }
@@ -187,14 +188,13 @@ Result<Gate> gate(const Benchmark& benchmark, const GateOptions& options) {
     return Failure{Fault::kUsage, "the two runs share no valid episode: other tasks, starts or seeds",
                    ""};
   }
-  decide(measured, 0, options);
   if (options.categories) {
     for (const Category& category : benchmark.categories) {
       Measured row = measure(benchmark, metric, options, category.label, category.tasks);
       if (row.row.episodes > 0) measured.push_back(std::move(row));
     }
-    decide(measured, 1, options);
   }
+  decide(measured, options);
   Gate out;
   out.options = options;
   out.now = benchmark.policies[kNow].label;

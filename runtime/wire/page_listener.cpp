@@ -47,6 +47,7 @@ class Conversation final : public Mouth, public std::enable_shared_from_this<Con
     const std::lock_guard lock(mutex_);
     if (io_ == nullptr) return;
     boost::asio::post(*io_, [self = shared_from_this(), why = why.substr(0, 120)] {
+      if (self->last_) return;  // it is being closed
       self->last_ = why;
       if (self->waiting_.empty()) self->close();
     });
@@ -65,9 +66,14 @@ class Conversation final : public Mouth, public std::enable_shared_from_this<Con
   }
 
  private:
+  // What is left when the loop is gone ends with an error, and has no loop to stop.
+  void stop() {
+    if (io_ != nullptr) io_->stop();
+  }
+
   void read(Ear& ear) {
     stream_.async_read(buffer_, [this, &ear](Error error, std::size_t) {
-      if (error) return io_->stop();
+      if (error) return stop();
       const auto* data = static_cast<const std::uint8_t*>(buffer_.data().data());
       const Frame heard{stream_.got_text(), Bytes(data, data + buffer_.size())};
       buffer_.consume(buffer_.size());
@@ -82,7 +88,7 @@ class Conversation final : public Mouth, public std::enable_shared_from_this<Con
     stream_.text(waiting_.front().is_text);
     stream_.async_write(boost::asio::buffer(waiting_.front().bytes),
                         [this](Error error, std::size_t) {
-                          if (error) return io_->stop();
+                          if (error) return stop();
                           unread_ -= waiting_.front().bytes.size();
                           waiting_.pop_front();
                           if (!waiting_.empty()) return write();

@@ -49,7 +49,11 @@ Result<report::Gate> measured(GateArguments& arguments) {
 
 int gate_verb(GateArguments& arguments) {
   const auto gate = measured(arguments);
-  if (!gate) return report(gate.failure());
+  if (!gate) {
+    // 1 is for a drop alone.
+    report(gate.failure());
+    return kOutside;
+  }
   if (arguments.json) {
     put("{}\n", to_json(*gate).dump(1));
   } else {
@@ -65,7 +69,7 @@ void add_gate(Verb app, int& exit) {
   auto arguments = std::make_shared<GateArguments>();
   Verb verb = app.add_subcommand(
       "gate", "may this run's policy take the place of that one's: exit 1 only for a drop that the "
-              "data show");
+              "data show, 2 where nothing can be said");
   verb.footer("example: vlaprobe gate runs/new --against runs/old --allow 2% --junit gate.xml");
   verb.add_option("NEW", arguments->now, "results folder").required();
   verb.add_option("--against", arguments->before, "results folder").required();

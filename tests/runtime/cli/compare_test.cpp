@@ -82,3 +82,10 @@ TEST_CASE("demonstrations are no rate, whoever is asked for one") {
   CHECK(into.err.find("holds successes alone (`vlaprobe demos`), not every episode") !=
         std::string::npos);
 }
+
+TEST_CASE("gate ends with 1 for a drop alone: where nothing can be said it is 2") {
+  Sandbox box;
+  for (const char* wrong : {"gate none --against neither", "gate none --against neither --allow two",
+                            "gate none --against none --error 70%"})
+    CHECK_MESSAGE(box.vlaprobe(wrong).exit == 2, wrong);
+}
