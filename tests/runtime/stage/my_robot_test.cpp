@@ -55,7 +55,7 @@ TEST_CASE("the example's own robot is checked, its hand measured, and the expert
   const auto loaded = SharedAssets::load(*plan, assets.folder(), tasks);
   REQUIRE_MESSAGE(loaded.ok(), (loaded.ok() ? "" : to_text(loaded.failure())));
   const auto& record = plan->robots()[plan->scenes()[plan->tasks()[tasks[0]].scene].robot];
-  CHECK((*loaded)->robot(record.urdf)->visuals.size() == 10);  // boxes, one a link that has any
+  CHECK((*loaded)->robot(record.urdf)->visuals.size() == 3);  // the boxes of hand and fingers
   const auto stage = Stage::create(*plan, tasks[0], *loaded, {{}, false});
   REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
   const std::uint32_t starts = plan->tasks()[tasks[0]].episodes.count;

@@ -186,7 +186,7 @@ TEST_CASE("a GR00T profile that cannot be sent is refused") {
         "the `dialect` of a GR00T server is n1.6, n1.6_nested or n1.5, not `n1.7`");
   CHECK(make_policy("gr00t://h?state.layout=joints")
             .failure()
-            .message.starts_with("GR00T is sent its state number by number"));
+            .message.starts_with("GR00T is sent its state entry by entry"));
 }
 
 }  // namespace probe::servers
