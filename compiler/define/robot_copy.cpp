@@ -8,20 +8,20 @@ RobotText over(const RobotText& copied, const syntax::RobotDecl& own) {
   RobotText out = copied;
   const std::size_t inherited = out.drives.size();
   std::vector<bool> replaced(inherited, false);
-  std::size_t statements = out.statements.size();
+  std::size_t copied_left = out.statements.size();
   for (const syntax::RobotStmt& stmt : own.body) {
     const auto* drive = std::get_if<syntax::DriveStmt>(&stmt);
     if (drive == nullptr) {
-      const auto same = std::find_if(
-          out.statements.begin(), out.statements.begin() + static_cast<std::ptrdiff_t>(statements),
-          [&](const syntax::RobotStmt* known) { return known->index() == stmt.index(); });
-      if (same == out.statements.begin() + static_cast<std::ptrdiff_t>(statements)) {
-        out.statements.push_back(&stmt);
-      } else {
+      const auto end = out.statements.begin() + static_cast<std::ptrdiff_t>(copied_left);
+      const auto same =
+          std::find_if(out.statements.begin(), end, [&](const syntax::RobotStmt* known) {
+            return known->index() == stmt.index();
+          });
+      if (same != end) {
         out.statements.erase(same);
-        --statements;
-        out.statements.push_back(&stmt);
+        --copied_left;
       }
+      out.statements.push_back(&stmt);
       continue;
     }
     for (const syntax::Name& joint : drive->joints) {

@@ -244,20 +244,18 @@ Result<Compilation> build(std::span<const std::string> files, const CompileOptio
 Result<Counted> count(std::span<const std::string> files, const CompileOptions& options) {
   Analyzed analyzed;
   PROBE_TRY(analyze(files, options, analyzed));
-  Counts counts;
-  const auto add = [&](const sema::Task& task, std::size_t starts) {
-    if (task.abstract || !task.complete) return;
-    ++counts.tasks;
-    counts.episodes += starts;
-  };
   if (options.suite.empty()) {
-    for (const sema::Task& task : analyzed.model.tasks) add(task, task.starts.size());
+    const Counts all{analyzed.compilation.tasks, analyzed.compilation.starts};
+    return Counted{std::move(analyzed.compilation), all};
   }
+  Counts counts;
   for (const sema::Suite& suite : analyzed.model.suites) {
-    if (options.suite.empty() || suite.name != options.suite) continue;
+    if (suite.name != options.suite) continue;
     for (const sema::TaskId id : suite.members) {
       const sema::Task& task = analyzed.model.tasks[id];
-      add(task, suite.starts_of(id, task).size());
+      if (task.abstract || !task.complete) continue;
+      ++counts.tasks;
+      counts.episodes += suite.starts_of(id, task).size();
     }
   }
   return Counted{std::move(analyzed.compilation), counts};

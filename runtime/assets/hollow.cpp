@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "runtime/base/trig.h"
-
 
 namespace probe::assets {
 namespace {
@@ -98,45 +100,33 @@ Inside find_inside(const scene::TriangleSoup& surface, const Vec3& low, const Ve
 }
 
 // Nothing where less than a solid is left.
-struct Piece {
-  Points corners;
-  double volume = 0;
-};
-
-Piece piece_of(const scene::TriangleSoup& surface, std::span<const HalfSpace> cell,
-               const std::string& name) {
-  Piece out;
-  Points points = within(surface, cell);
-  if (points.size() < 4) return out;
+std::optional<scene::HullPart> piece_of(const scene::TriangleSoup& surface,
+                                        std::span<const HalfSpace> cell, const std::string& name) {
+  const Points points = within(surface, cell);
+  if (points.size() < 4) return std::nullopt;
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  if ((high - low).minCoeff() < kThinnest) return out;
-  const auto hull = scene::make_hull(points, name, 32);
-  if (!hull) return out;
-  out.corners = hull->part.vertices;
-  out.volume = hull->volume;
-  return out;
+  if ((high - low).minCoeff() < kThinnest) return std::nullopt;
+  auto hull = scene::make_hull(points, name, 32);
+  if (!hull) return std::nullopt;
+  return std::move(hull).value();
 }
 
-// A hull's triangles behind those that are there, with corners of its own.
-bool add_hull(const Points& corners, const std::string& name, scene::TriangleSoup& to) {
-  const auto hull = scene::make_hull(corners, name, 32);
-  if (!hull) return false;
+}  // namespace
+
+void add_triangles(const scene::ConvexPart& part, const Vec3& centre, scene::TriangleSoup& to) {
   const auto first = static_cast<std::uint32_t>(to.vertices.size());
-  to.vertices.insert(to.vertices.end(), hull->part.vertices.begin(), hull->part.vertices.end());
-  for (const scene::ConvexPart::Face& face : hull->part.faces) {
+  for (const Vec3& p : part.vertices) to.vertices.push_back(p + centre);
+  for (const scene::ConvexPart::Face& face : part.faces) {
     for (std::size_t k = 1; k + 1 < face.loop.size(); ++k) {
       to.indices.insert(to.indices.end(),
                         {first + face.loop[0], first + face.loop[k], first + face.loop[k + 1]});
     }
   }
-  return true;
 }
-
-}  // namespace
 
 double enclosed_volume(const scene::TriangleSoup& surface) {
   double six = 0;
@@ -162,40 +152,37 @@ Result<scene::TriangleSoup> split_hollow(const scene::TriangleSoup& surface,
     return Failure{Fault::kAsset, "nothing in it is open upwards: it has no inside to keep free",
                    name};
   }
+  const auto add = [&](const std::optional<scene::HullPart>& piece) {
+    if (piece) add_triangles(piece->part, Vec3::Zero(), out);
+  };
   const HalfSpace below{Vec3::UnitZ(), inside.floor};
-  const Piece bottom = piece_of(surface, {&below, 1}, name);
-  bool is_whole = bottom.corners.empty() || add_hull(bottom.corners, name, out);
+  add(piece_of(surface, {&below, 1}, name));
   // A hair above the floor: what lies in the plane of the cut is the floor's, and reaches the middle.
   const double foot = inside.floor + 1e-5;
+  const auto height = [&](int at) { return foot + (high.z() - foot) * at / kSlices; };
   for (int i = 0; i < kSectors; ++i) {
     const auto side = [&](int k, double sign) {
       const SinCos turn = portable_sincos_deg(360.0 * k / kSectors);
       const Vec3 normal(sign * turn.sin, -sign * turn.cos, 0);
       return HalfSpace{normal, normal.x() * inside.x + normal.y() * inside.y};
     };
-    std::vector<HalfSpace> cell = {side(i, 1), side(i + 1, -1), {-Vec3::UnitZ(), -foot}};
-    const Piece whole = piece_of(surface, cell, name);
-    std::vector<Piece> slices;
+    const HalfSpace cell[] = {side(i, 1), side(i + 1, -1), {-Vec3::UnitZ(), -foot}};
+    const auto whole = piece_of(surface, cell, name);
+    std::vector<std::optional<scene::HullPart>> slices;
     double sum = 0;
     for (int k = 0; k < kSlices; ++k) {
-      const auto height = [&](int at) {
-        return foot + (high.z() - foot) * at / kSlices;
-      };
-      std::vector<HalfSpace> slice = {cell[0], cell[1], {-Vec3::UnitZ(), -height(k)},
-                                      {Vec3::UnitZ(), height(k + 1)}};
+      const HalfSpace slice[] = {cell[0], cell[1], {-Vec3::UnitZ(), -height(k)},
+                                 {Vec3::UnitZ(), height(k + 1)}};
       slices.push_back(piece_of(surface, slice, name));
-      sum += slices.back().volume;
+      if (slices.back()) sum += slices.back()->volume;
     }
     // Where slices are too thin to be solid the sector is.
-    if (!whole.corners.empty() && (whole.volume <= 1.1 * sum || sum == 0)) {
-      is_whole = add_hull(whole.corners, name, out) && is_whole;
-      continue;
-    }
-    for (const Piece& slice : slices) {
-      if (!slice.corners.empty()) is_whole = add_hull(slice.corners, name, out) && is_whole;
+    if (whole && (whole->volume <= 1.1 * sum || sum == 0)) {
+      add(whole);
+    } else {
+      for (const auto& slice : slices) add(slice);
     }
   }
-  if (!is_whole) return Failure{Fault::kAsset, "a piece of it has no hull", name};
   if (out.indices.empty()) return Failure{Fault::kAsset, "nothing solid is left of it", name};
   return out;
 }

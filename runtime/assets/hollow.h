@@ -14,6 +14,10 @@ namespace probe::assets {
 // (kAsset) where nothing is open upwards and closed below.
 Result<scene::TriangleSoup> split_hollow(const scene::TriangleSoup& surface, const std::string& name);
 
+// The faces of a hull behind the triangles that are there, with corners of its own; its corners are
+// about `centre`.
+void add_triangles(const scene::ConvexPart& part, const Vec3& centre, scene::TriangleSoup& to);
+
 // Cubic metres within a closed surface whose triangles wind outwards, 0 or less where they do not.
 double enclosed_volume(const scene::TriangleSoup& surface);
 

@@ -48,13 +48,7 @@ std::string obj_text(const scene::TriangleSoup& soup) {
 // The hull of a shape's only part, as triangles in the model frame.
 scene::TriangleSoup hull_triangles(const scene::CollisionShape& shape) {
   scene::TriangleSoup soup;
-  const scene::ConvexPart& part = shape.parts.front();
-  for (const Vec3& p : part.vertices) soup.vertices.push_back(p + shape.center_of_mass);
-  for (const scene::ConvexPart::Face& face : part.faces) {
-    for (std::size_t k = 1; k + 1 < face.loop.size(); ++k) {
-      soup.indices.insert(soup.indices.end(), {face.loop[0], face.loop[k], face.loop[k + 1]});
-    }
-  }
+  add_triangles(shape.parts.front(), shape.center_of_mass, soup);
   return soup;
 }
 

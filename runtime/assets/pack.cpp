@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 
+#include "runtime/assets/identifier.h"
 #include "runtime/assets/model_files.h"
 #include "runtime/assets/output_folder.h"
 #include "runtime/assets/robot_files.h"
@@ -81,13 +81,7 @@ std::vector<std::string> doubts_of(const PackOptions& options, const Vec3& size,
 std::string text_of(const PackOptions& options, const Extent& extent) {
   fs::path folder = fs::path(options.to).lexically_normal();
   if (folder.filename().empty()) folder = folder.parent_path();  // a slash at the end
-  std::string name;
-  for (const char c : folder.filename().string()) {
-    const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
-    name += is_word ? c : '_';
-  }
-  if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0)
-    name.insert(0, "my_");
+  const std::string name = identifier_of(folder.filename().string(), "my");
   std::string words = name;
   std::replace(words.begin(), words.end(), '_', ' ');
   return fmt::format(

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "runtime/base/digit_groups.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
 #include "runtime/cli/watch.h"
@@ -32,9 +33,7 @@ std::vector<std::string> to_watch(const CheckArguments& arguments, const Compile
 
 // "1 error", "1,224 starts".
 std::string counted(std::size_t count, const char* thing) {
-  std::string digits = std::to_string(count);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return fmt::format("{} {}{}", digits, thing, count == 1 ? "" : "s");
+  return fmt::format("{} {}{}", digit_groups(count), thing, count == 1 ? "" : "s");
 }
 
 // How much was looked at, what was found, how long it took: a silent success looks like nothing.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "runtime/base/trig.h"
+#include "runtime/base/xml_text.h"
 
 namespace probe::inspect {
 namespace {
@@ -43,29 +44,6 @@ std::string_view colour(Role role) {
 std::string px(double value) { return fmt::format("{}", std::nearbyint(value * 10) / 10 + 0.0); }
 std::string cm(double metres) {
   return fmt::format("{}", std::nearbyint(metres * 1000) / 10 + 0.0);
-}
-
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
 }
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t columns) {
@@ -180,7 +158,7 @@ class Page {
   void text(double at_x, double at_y, int size, std::string_view fill, std::string_view words,
             std::string_view more = "") {
     put("<text x=\"{}\" y=\"{}\" font-size=\"{}\" fill=\"{}\"{}>{}</text>\n", px(at_x), px(at_y),
-        size, fill, more, escaped(words));
+        size, fill, more, xml_text(words));
   }
 
   void open() {
@@ -190,7 +168,7 @@ class Page {
     // For programs that show it: the plot, and x px = zero x + scale * x m, y px = zero y - scale * y m.
     put(" data-plot=\"{} {} {} {}\" data-scale=\"{}\" data-zero=\"{} {}\">\n", px(kLeft),
         px(plot_top_), px(plot_width_), px(plot_height_), scale_, x(0), y(0));
-    put("<title>{}</title>\n", escaped(view_.prompt));
+    put("<title>{}</title>\n", xml_text(view_.prompt));
     put("<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n", px(width_), px(height_));
   }
 
@@ -241,7 +219,7 @@ class Page {
   // Solid where they begin, dashed where their joint ends.
   void parts() {
     for (const TopPart& part : view_.parts) {
-      put("<g stroke=\"{0}\"><title>{1}</title>\n", kFixture, escaped(part.name));
+      put("<g stroke=\"{0}\"><title>{1}</title>\n", kFixture, xml_text(part.name));
       for (const auto& outline : part.outlines) {
         put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.18\"/>\n", points(outline),
             kFixture);
@@ -256,7 +234,7 @@ class Page {
     for (const TopRegion& region : view_.regions) {
       put("<g><title>{}</title><polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.06\" "
           "stroke=\"{}\" stroke-dasharray=\"1 3\" stroke-width=\"2\"/></g>\n",
-          escaped(region.name), points(region.outline), kRegion, kRegion);
+          xml_text(region.name), points(region.outline), kRegion, kRegion);
     }
   }
 
@@ -270,11 +248,11 @@ class Page {
   void footprints(Role role) {
     for (const Footprint& print : view_.footprints) {
       if (print.role != role) continue;
-      put("<g data-object=\"{}\" data-at=\"{} {}\" data-starts=\"{}\" ", escaped(print.object),
+      put("<g data-object=\"{}\" data-at=\"{} {}\" data-starts=\"{}\" ", xml_text(print.object),
           print.at.x, print.at.y, fmt::join(print.starts, " "));
       put("fill=\"{0}\" stroke=\"{0}\"><title>{1} at ({2}, {3}) cm, yaw {4} deg{6}: starts "
           "{5}</title>\n",
-          colour(role), escaped(print.object), cm(print.at.x), cm(print.at.y),
+          colour(role), xml_text(print.object), cm(print.at.x), cm(print.at.y),
           fmt::format("{}", std::nearbyint(print.yaw_deg * 10) / 10 + 0.0), ranges(print.starts),
           print.moves.empty() ? "" : ", moves " + print.moves);
       put("<polygon points=\"{}\" fill-opacity=\"0.12\" stroke-width=\"1.3\" "

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/percent.h"
+#include "runtime/base/xml_text.h"
 #include "runtime/report/gate.h"
 
 namespace probe::report {
@@ -44,22 +45,6 @@ std::string sure(const Gate& gate) {
   return fmt::format("Each bound holds with {} %, whenever one looks; an allowed change is called "
                      "worse with chance at most {} %.",
                      points(1 - gate.options.error), points(gate.options.error));
-}
-
-std::string in_xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default:
-        // XML 1.0 has no other control characters.
-        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') out += c;
-    }
-  }
-  return out;
 }
 
 std::string in_cell(std::string_view text) {
@@ -107,9 +92,9 @@ std::string to_junit(const Gate& gate) {
       "tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\">\n",
       gate.rows.size(), failures);
   for (const GateRow& row : gate.rows) {
-    const std::string said = in_xml(sentence(gate, row));
-    out += fmt::format("    <testcase classname=\"{} against {}\" name=\"{}: {}\">\n", in_xml(gate.now),
-                       in_xml(gate.before), in_xml(gate.options.metric), in_xml(row.name));
+    const std::string said = xml_text(sentence(gate, row));
+    out += fmt::format("    <testcase classname=\"{} against {}\" name=\"{}: {}\">\n", xml_text(gate.now),
+                       xml_text(gate.before), xml_text(gate.options.metric), xml_text(row.name));
     if (row.verdict == Verdict::kWorse) {
       out += fmt::format("      <failure message=\"{}\">{}</failure>\n", said, said);
     } else {
@@ -119,7 +104,7 @@ std::string to_junit(const Gate& gate) {
   }
   std::string notes = sure(gate);
   for (const std::string& note : gate.notes) notes += "\n" + note;
-  return out + "    <system-out>" + in_xml(notes) + "</system-out>\n  </testsuite>\n</testsuites>\n";
+  return out + "    <system-out>" + xml_text(notes) + "</system-out>\n  </testsuite>\n</testsuites>\n";
 }
 
 Json to_json(const Gate& gate) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <set>
 
+#include "runtime/base/digit_groups.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
 
@@ -163,11 +164,9 @@ std::string what_policy_did(const Policy& policy) {
     done += run.done;
     seeds.insert(run.seeds.begin(), run.seeds.end());
   }
-  std::string digits = std::to_string(done);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
   std::string list;
   for (const int seed : seeds) list += (list.empty() ? "" : ", ") + std::to_string(seed);
-  return fmt::format("{} episodes, seed{} {}", digits, seeds.size() == 1 ? "" : "s", list);
+  return fmt::format("{} episodes, seed{} {}", digit_groups(static_cast<std::size_t>(done)), seeds.size() == 1 ? "" : "s", list);
 }
 
 std::vector<std::string> what_was_run(const Benchmark& benchmark) {
