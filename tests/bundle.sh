@@ -58,13 +58,20 @@ finally:
     studio.terminate()' "$work/linked" "$work"
 check "no file names where it was built" bash -c '! grep -rlF "$1" "$2"' - "$here" "$bundle"
 
-# The image holds nothing but the folder: no shell, no system.
+# The same bytes also where the clock is behind the commit's, and whether or not the disk has written the folder.
+stamp=$(cat "$made/stamp")
+echo $(($(date +%s) + 86400)) >"$made/stamp"
 images() { (cd "$made" && VLAPROBE_DEB_LEVEL=0 "$here/.ci/package" deb oci && sha256sum ./*.deb ./*.oci.tar); }
 check "packages are made" images
 cp "$work/log" "$work/first"
+sync
 check "packages are made again" images
 cp "$work/log" "$work/second"
 check "and have the same bytes" cmp "$work/first" "$work/second"
+echo "$stamp" >"$made/stamp"
+check "the image of the commit's time is made" images
+
+# The image holds nothing but the folder: no shell, no system.
 unpack() { # the image's layers into $work/image
   python3 - "$made/$name.oci.tar" "$work/image" <<'END'
 import io, json, sys, tarfile

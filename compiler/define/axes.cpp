@@ -45,10 +45,14 @@ bool same_words(const std::vector<Spelled>& a, const std::vector<Spelled>& b) {
                     [](const Spelled& p, const Spelled& q) { return p.text == q.text; });
 }
 
-// Whether they take the same of a layout's starts, as far as that is said, and begin as long after.
+// Whether they take the same of a layout's starts and begin as long after. Which starts phrases
+// leave is known when they are enumerated: the words alone say nothing, another phrase may be clear
+// in the same starts, and the same one in others where the camera is another.
 bool same_choice(const Task& a, const Task& b) {
-  return a.idle == b.idle &&
-         std::equal(a.clear.begin(), a.clear.end(), b.clear.begin(), b.clear.end(),
+  if (a.idle != b.idle) return false;
+  if (a.clear.empty() && b.clear.empty()) return true;
+  if (!a.starts.empty() && !b.starts.empty()) return start_at_same_places(a, b);
+  return std::equal(a.clear.begin(), a.clear.end(), b.clear.begin(), b.clear.end(),
                     [](const ClearPhrase& p, const ClearPhrase& q) {
                       return p.role == q.role && p.phrase.text == q.phrase.text;
                     });

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <span>
 
+#include "compiler/define/axes.h"
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/in_start.h"
@@ -411,15 +413,60 @@ std::vector<Start> clear_starts(Relations& relations, const Model& model, const 
 
 namespace {
 
-// A phrase by which starts are chosen is clear in others where the camera or the scene is another:
-// then the places moved, whatever the text calls them.
+// What differs by the choice of phrases can be told only now.
 void compare_choices(Model& model) {
   for (Task& task : model.tasks) {
-    if (task.baseline == TaskId::kNone || task.starts.empty()) continue;
+    if (task.baseline == TaskId::kNone) continue;
     const Task& baseline = model.tasks[task.baseline];
-    if ((task.clear.empty() && baseline.clear.empty()) || baseline.starts.empty()) continue;
-    if (!start_at_same_places(task, baseline)) task.axes |= plan::bit(plan::Axis::kLayout);
+    if (task.clear.empty() && baseline.clear.empty()) continue;
+    task.axes = axes_between(model, task, baseline);
   }
+}
+
+// What fills roles and what the layout placed by name: distractors, between the two, are left out.
+std::vector<Start::Placed> standing(const Task& task, const Start& start) {
+  std::vector<Start::Placed> all = start.placed;
+  const auto first = all.begin() + static_cast<std::ptrdiff_t>(std::min(roles_filled(task), all.size()));
+  const auto count = std::min(static_cast<std::ptrdiff_t>(task.distractors.size()), all.end() - first);
+  all.erase(first, first + count);
+  return all;
+}
+
+std::vector<plan::Place> places_of(std::span<const Start::Placed> placed) {
+  std::vector<plan::Place> places;
+  for (const Start::Placed& one : placed) places.push_back(plan::place_at(one.x, one.y));
+  return places;
+}
+
+std::vector<plan::Place> places_taken(const Task& task, const Start& start) {
+  std::vector<plan::Place> places = places_of(standing(task, start));
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
+std::vector<plan::Place> places_in_roles(const Task& task, const Start& start) {
+  return places_of(std::span(start.placed).first(std::min(roles_filled(task), start.placed.size())));
+}
+
+const Start::Placed* find_placed(const Start& start, ObjectId object) {
+  const auto found = std::ranges::find(start.placed, object, &Start::Placed::object);
+  return found == start.placed.end() ? nullptr : &*found;
+}
+
+// Whether all that stands in one start lies there in the other, too, as far as it is in it; where
+// it is not, what fills its role there. Distractors alone may have moved.
+bool stand_there(const Task& a, const Start& here, const Task& b, const Start& there) {
+  const std::size_t shared = std::min(roles_filled(a), roles_filled(b));
+  const std::vector<Start::Placed> all = standing(a, here);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Start::Placed* other = find_placed(there, all[i].object);
+    if (other == nullptr && i < shared && find_placed(here, there.placed[i].object) == nullptr)
+      other = &there.placed[i];
+    if (other != nullptr &&
+        plan::place_at(all[i].x, all[i].y) != plan::place_at(other->x, other->y))
+      return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -429,18 +476,17 @@ std::size_t roles_filled(const Task& task) {
 }
 
 bool start_at_same_places(const Task& a, const Task& b) {
-  const std::size_t shared = std::min(roles_filled(a), roles_filled(b));
   return std::ranges::equal(a.starts, b.starts, [&](const Start& p, const Start& q) {
-    if (std::min(p.placed.size(), q.placed.size()) < shared) return false;
-    return std::equal(p.placed.begin(), p.placed.begin() + static_cast<std::ptrdiff_t>(shared),
-                      q.placed.begin(), [](const Start::Placed& x, const Start::Placed& y) {
-                        return plan::place_at(x.x, x.y) == plan::place_at(y.x, y.y);
-                      });
+    return stand_there(a, p, b, q) && stand_there(b, q, a, p);
   });
 }
 
 bool starts_correspond(const Task& a, const Task& b) {
-  return a.scene == b.scene && roles_filled(a) == roles_filled(b) && start_at_same_places(a, b);
+  return a.scene == b.scene &&
+         std::ranges::equal(a.starts, b.starts, [&](const Start& p, const Start& q) {
+           return places_in_roles(a, p) == places_in_roles(b, q) ||
+                  places_taken(a, p) == places_taken(b, q);
+         });
 }
 
 void define_starts(Context& context) {

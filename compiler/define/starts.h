@@ -35,12 +35,12 @@ std::vector<Start> clear_starts(Relations& relations, const Model& model, const 
 // How many objects have a role: they come first in a start.
 std::size_t roles_filled(const Task& task);
 
-// Whether two tasks have as many starts, and in each what fills the roles that both have lies at
-// the same places.
+// Whether two tasks have as many starts, and in each what is in both lies at the same place,
+// whatever its role, and so does what fills the role of an object that is in one only.
 bool start_at_same_places(const Task& a, const Task& b);
 // Whether the starts of two tasks correspond one by one: what is compared is then compared start by
-// start, else only in the mean. The same in one scene, where the same number of objects have roles:
-// as the report pairs them, by plan::place_key.
+// start, else only in the mean. In one scene, the same places of what fills roles, or of all but
+// distractors whichever has which role: as the report pairs them, by plan::place_key and taken_key.
 bool starts_correspond(const Task& a, const Task& b);
 
 }  // namespace probe::sema

@@ -180,7 +180,8 @@ void mark_pairing(const Benchmark& benchmark, Task& task) {
     return;
   }
   for (std::size_t s = 0; s < task.starts.size(); ++s) {
-    if (task.starts[s].cluster == baseline.starts[s].cluster) continue;
+    const StartPlace &here = task.starts[s], &there = baseline.starts[s];
+    if (here.cluster == there.cluster || here.taken == there.taken) continue;
     task.unpaired = "its objects start in other places than the baseline's";
     return;
   }

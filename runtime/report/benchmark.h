@@ -36,6 +36,7 @@ struct Object {
 struct StartPlace {
   std::string start_id, episode_id;  // hex
   std::uint32_t cluster = 0;         // starts of any task that lie in the same places share it
+  std::uint32_t taken = 0;           // the same whichever thing has which role (plan::taken_key)
   std::vector<std::array<double, 3>> bodies;  // x, y (m), yaw (deg): as the task's bodies
 };
 

@@ -142,6 +142,7 @@ StartPlace JoinedPlans::place(const plan::Plan& plan, const plan::TaskRecord& ta
   for (const plan::PlacementRecord& body : plan.placements(episode))
     place.bodies.push_back({body.position[0], body.position[1], yaw_deg(body.rotation)});
   place.cluster = clusters_(plan::place_key(plan, task, episode));
+  place.taken = taken_(plan::taken_key(plan, task, episode));
   return place;
 }
 

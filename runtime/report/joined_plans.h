@@ -50,7 +50,7 @@ class JoinedPlans {
   std::vector<std::vector<std::uint32_t>> members_;  // by plan
   std::vector<PlanTasks> maps_;                      // by plan
   std::map<TaskKey, std::size_t> by_content_;
-  Numbering<std::string> clusters_;
+  Numbering<std::string> clusters_, taken_;
   std::vector<std::string> two_meanings_;
 };
 

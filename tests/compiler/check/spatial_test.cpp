@@ -1,6 +1,7 @@
 // Phrases that say where things are, proved in every start; and the words they must have.
 #include <doctest/doctest.h>
 
+#include "compiler/define/starts.h"
 #include "runtime/plan/axes.h"
 #include "tests/compiler/small_suite.h"
 
@@ -226,6 +227,31 @@ TEST_CASE(
   // One toy alone is not the left one.
   CHECK(mistake("task t like base { source sided; target tray; refer source as side }") ==
         "error[P0401]: \"left block\" does not denote `sided` in 24 of the 24 starts of `t`");
+}
+
+TEST_CASE("where all lies where it lay, other roles and other words for them are no other layout") {
+  const std::string twins =
+      std::string(kRelations) +
+      "relation rightmost(a: object) \"right\" = all o in alike - {a}: left_of(o, a)\n"
+      "object one like red { phrase side spatial \"left block\" means category toy and leftmost }\n"
+      "object other like red { phrase side spatial \"right block\" means category toy and "
+      "rightmost }\n"
+      "layout apart { cells spots = grid 1 x 2 at (0cm, 0cm) spread (0cm, 20cm)\n"
+      "place one in distinct spots; place other in distinct spots; place tray at (-20cm, 0cm)\n"
+      "orient by rest; drop 10cm settle 0.5s }\n"
+      "task left like base { layout apart where clear side of source; source one; target tray; "
+      "refer source as side }\n";
+  const auto moved = [&](const std::string& lines) {
+    const auto a = test::analyze_with_suite(twins + "variant right of left { " + lines + " }");
+    CHECK_MESSAGE(a->said() == "", a->said());
+    REQUIRE(a->task("right").starts.size() == 2);
+    CHECK(sema::starts_correspond(a->task("right"), a->task("left")));
+    return plan::axis_names(a->task("right").axes);
+  };
+  const std::vector<std::string_view> source = {"object.source"};
+  CHECK(moved("source other; refer source as side") == source);
+  CHECK(moved("source other; layout apart where clear side of source; refer source as side") ==
+        source);
 }
 
 TEST_CASE("another camera chooses other starts, which is another layout") {

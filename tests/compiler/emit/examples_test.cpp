@@ -4,6 +4,7 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/plan/places.h"
 #include "runtime/plan/plan.h"
 
 using namespace probe;
@@ -28,4 +29,24 @@ TEST_CASE("every example compiles without a word") {
     CHECK(plan->suites().size() >= 1);
   }
   CHECK(seen >= 3);
+}
+
+TEST_CASE("a contrast pair is paired start by start: roles change, nothing moves") {
+  const std::string file = VLAPROBE_SOURCE_DIR "/examples/left_right.probe";
+  const auto built = build(std::span<const std::string>(&file, 1),
+                           {VLAPROBE_SOURCE_DIR "/assets", "", {VLAPROBE_SOURCE_DIR "/dsl"}});
+  REQUIRE(built.ok());
+  const auto plan = plan::Plan::from_bytes(built->plan);
+  REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
+  const auto keys = [&](std::string_view name) {
+    std::vector<std::string> all;
+    for (const plan::TaskRecord& task : plan->tasks()) {
+      if (plan->text(task.name) != name) continue;
+      for (const plan::EpisodeRecord& episode : plan->episodes(task))
+        all.push_back(plan::taken_key(*plan, task, episode));
+    }
+    return all;
+  };
+  CHECK(keys("left_can").size() == 12);
+  CHECK(keys("left_can") == keys("right_can"));
 }
