@@ -426,8 +426,10 @@ void compare_choices(Model& model) {
 // What fills roles and what the layout placed by name: distractors, between the two, are left out.
 std::vector<Start::Placed> standing(const Task& task, const Start& start) {
   std::vector<Start::Placed> all = start.placed;
-  const auto first = all.begin() + static_cast<std::ptrdiff_t>(std::min(roles_filled(task), all.size()));
-  const auto count = std::min(static_cast<std::ptrdiff_t>(task.distractors.size()), all.end() - first);
+  const auto first =
+      all.begin() + static_cast<std::ptrdiff_t>(std::min(roles_filled(task), all.size()));
+  const auto count =
+      std::min(static_cast<std::ptrdiff_t>(task.distractors.size()), all.end() - first);
   all.erase(first, first + count);
   return all;
 }
@@ -445,7 +447,8 @@ std::vector<plan::Place> places_taken(const Task& task, const Start& start) {
 }
 
 std::vector<plan::Place> places_in_roles(const Task& task, const Start& start) {
-  return places_of(std::span(start.placed).first(std::min(roles_filled(task), start.placed.size())));
+  return places_of(
+      std::span(start.placed).first(std::min(roles_filled(task), start.placed.size())));
 }
 
 const Start::Placed* find_placed(const Start& start, ObjectId object) {
