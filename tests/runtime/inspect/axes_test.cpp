@@ -99,7 +99,7 @@ variants of carrots { spoons { source spoon }; covered { distractors towel }; st
 }
 
 TEST_CASE("a robot whose law differs in a number is another scene, not another goal") {
-  const auto text = read_file(VLAPROBE_SOURCE_DIR "/suite/panda.probe", {});
+  const auto text = read_file(VLAPROBE_SOURCE_DIR "/suite/panda_robot.probe", {});
   REQUIRE(text.ok());
   const std::size_t begin = text->find("robot panda {"), end = text->find("\n}", begin);
   REQUIRE(end != std::string::npos);
