@@ -2,15 +2,15 @@
 
 #include <algorithm>
 
+#include "compiler/check/goal_bearings.h"
+#include "compiler/check/goal_things.h"
+
 namespace probe::sema {
 namespace {
 
-using Given = std::vector<Things>;  // by variable of a predicate or metric
-
-class Reader {
+class Reader : GoalThings {
  public:
-  Reader(const Model& model, const Task& task, Goal& goal)
-      : model_(model), task_(task), goal_(goal) {}
+  Reader(const Model& model, const Task& task, Goal& goal) : GoalThings(model, task), goal_(goal) {}
 
   void read(const Metric& metric) {
     const Given given(metric.variables);
@@ -22,80 +22,6 @@ class Reader {
   }
 
  private:
-  const ExprNode& at(ExprRef ref) const { return model_.exprs.nodes[ref]; }
-
-  // Of what an expression speaks, but for what is inside the predicates that it calls.
-  Things things(ExprRef ref, const Given& given) const {
-    if (ref == kNoExpr) return {};
-    const ExprNode& node = at(ref);
-    Things found;
-    const auto fixture = static_cast<FixtureId>(node.a);
-    switch (node.op) {
-      case ExprOp::kRole: {
-        const auto filled = task_.objects_in(static_cast<RoleId>(node.a));
-        found.insert(filled.begin(), filled.end());
-        break;
-      }
-      case ExprOp::kObject:
-        found.insert(static_cast<ObjectId>(node.a));
-        break;
-      case ExprOp::kPart:
-        found.insert(model_.fixtures[fixture].parts[node.b].thing);
-        break;
-      case ExprOp::kRegion:
-        found.insert(model_.fixtures[fixture].regions[node.b].thing);
-        break;
-      case ExprOp::kJoint:
-        for (const Fixture::Part& part : model_.fixtures[fixture].parts) {
-          if (part.joint == node.b) found.insert(part.thing);
-        }
-        break;
-      case ExprOp::kVariable:
-        if (node.a < given.size()) found = given[node.a];
-        break;
-      case ExprOp::kAny:
-      case ExprOp::kAll:
-      case ExprOp::kNo: {
-        Given inner = given;
-        bind(inner, node.a, things_in(node.set, given));
-        found = things(node.args[0], inner);
-        break;
-      }
-      default:
-        for (const ExprRef arg : node.args) found.merge(things(arg, given));
-    }
-    found.erase(ObjectId::kNone);
-    return found;
-  }
-
-  // Of a set that names what is in it; of all other bodies nothing is certain.
-  Things things_in(SetRef ref, const Given& given) const {
-    const SetNode& set = model_.exprs.sets[ref];
-    Things found;
-    if (set.op == SetOp::kRole) {
-      const auto filled = task_.objects_in(set.role);
-      found.insert(filled.begin(), filled.end());
-    }
-    for (const ExprRef body : set.bodies) found.merge(things(body, given));
-    if (set.op == SetOp::kUnion) {
-      found = things_in(set.left, given);
-      found.merge(things_in(set.right, given));
-    }
-    return found;
-  }
-
-  static void bind(Given& given, std::uint32_t variable, Things to) {
-    if (variable >= given.size()) given.resize(variable + 1);
-    given[variable] = std::move(to);
-  }
-
-  Given given_to(const ExprNode& call, const Given& given) const {
-    Given inner(model_.predicates[call.predicate].variables);
-    for (std::uint32_t i = 0; i < call.args.size(); ++i)
-      bind(inner, i, things(call.args[i], given));
-    return inner;
-  }
-
   // Whether this call has not been looked at yet, for one purpose.
   using Calls = std::set<std::pair<PredicateId, Given>>;
   static bool is_new(Calls& calls, const ExprNode& call, const Given& inner) {
@@ -430,8 +356,6 @@ class Reader {
     for (const ExprRef arg : node.args) order(arg, given);
   }
 
-  const Model& model_;
-  const Task& task_;
   Goal& goal_;
   Calls measured_, asked_, ordered_;
   std::set<std::pair<PredicateId, std::vector<bool>>> sided_;  // looked at for sides
@@ -443,7 +367,14 @@ Goal goal_of(const Model& model, const Task& task) {
   Goal goal;
   Reader reader(model, task, goal);
   for (const Metric& metric : task.judged) {
-    if (metric.name == "success") reader.read(metric);
+    if (metric.name != "success") {
+      Goal beside;
+      read_bearings(model, task, metric, beside);
+      for (const auto& [two, bearing] : beside.bearings) goal.measured_beside.insert(two);
+      continue;
+    }
+    reader.read(metric);
+    read_bearings(model, task, metric, goal);
   }
   return goal;
 }

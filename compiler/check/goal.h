@@ -2,6 +2,7 @@
 // certain; where a goal leaves something open, nothing is said of it here.
 #pragma once
 
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -33,6 +34,21 @@ struct Goal {
   // Something is measured that is one way on the left and another on the right: a coordinate, a
   // region, a direction, a joint. What is the same on either side is none: a square, `abs`.
   bool tells_sides = false;
+  // How it measures two things against one another, the lower id first: so that they are near when
+  // it holds, so that they are apart, or otherwise. Denied conditions alone: not `asked`.
+  struct Bearing {
+    bool near = false, apart = false, other = false, asked = false;
+  };
+  std::map<std::pair<ObjectId, ObjectId>, Bearing> bearings;
+  // What metrics beside success measure of one another.
+  std::set<std::pair<ObjectId, ObjectId>> measured_beside;
+  // Which way it wants the joint that moves a part: at least so far from where it is closed, at most
+  // so far, or otherwise. Of a joint that moves no declared part: `moves_unnamed`.
+  struct Way {
+    bool opens = false, closes = false, other = false;
+  };
+  std::map<ObjectId, Way> ways;
+  bool moves_unnamed = false;
   // Of what it speaks by name or role, of whatever condition; of everything, where it goes through
   // a set that names nothing.
   Things spoken;

@@ -5,8 +5,11 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <tuple>
 
 #include "compiler/check/check.h"
+#include "compiler/check/clause_goal.h"
+#include "compiler/check/clauses.h"
 #include "compiler/check/goal.h"
 #include "compiler/check/noun_words.h"
 #include "compiler/check/relation_words.h"
@@ -151,17 +154,36 @@ class Shared {
     right_.insert({say, success});
   }
 
+  // The same of clauses, of tasks whose roles are filled alike: each by as many objects, by the
+  // same parts; by the same objects where expressions name some.
+  using Filled = std::vector<std::uint32_t>;
+  using ClauseKey = std::tuple<TemplateId, std::vector<ExprRef>, Filled>;
+  ClauseKey clause_key(const Task& task) const {
+    Filled filled;
+    for (std::size_t i = 0; i < model_.roles.size(); ++i) {
+      const auto objects = task.objects_in(model_.roles.id(i));
+      filled.push_back(static_cast<std::uint32_t>(objects.size()));
+      for (const ObjectId id : objects) {
+        if (model_.exprs.names_objects || !task.is_object(id))
+          filled.push_back(static_cast<std::uint32_t>(id));
+      }
+    }
+    return {task.say, success_of(task), std::move(filled)};
+  }
+  bool has_right_clauses(const ClauseKey& key) const { return right_clauses_.contains(key); }
+  void keep_right_clauses(ClauseKey key) { right_clauses_.insert(std::move(key)); }
+
  private:
   const Model& model_;
   std::map<TemplateId, Text> texts_;
   std::map<std::vector<ExprRef>, std::set<PredicateId>> relations_;
   std::map<std::vector<ExprRef>, std::set<PartOf>> parts_;
   std::set<std::pair<TemplateId, std::vector<ExprRef>>> right_;
+  std::set<ClauseKey> right_clauses_;
 };
 
 // An instruction that says the opposite of what success is, or another relation alone.
-bool says_other_relation(const Model& model, const Task& task, Shared& shared,
-                         Reporter& reporter) {
+bool says_other_relation(const Model& model, const Task& task, Shared& shared, Reporter& reporter) {
   const std::vector<ExprRef> success = Shared::success_of(task);
   const std::set<PredicateId>& judged = shared.relations(success);
   if (judged.empty() || shared.is_known_right(task.say, success)) return false;
@@ -229,6 +251,10 @@ class Told {
     if (!goal_) goal_ = goal_of(model_, task_);
     return *goal_;
   }
+  const Clauses& clauses() {
+    if (!clauses_) clauses_ = clauses_of(model_, task_);
+    return *clauses_;
+  }
 
   // Those of the table that are said.
   const std::vector<GoalWords>& words() const { return text_.words; }
@@ -256,9 +282,8 @@ class Told {
 
  private:
   bool says(Asks asks) {
-    return std::any_of(text_.words.begin(), text_.words.end(), [&](const GoalWords& one) {
-      return one.asks == asks && tells_to(one);
-    });
+    return std::any_of(text_.words.begin(), text_.words.end(),
+                       [&](const GoalWords& one) { return one.asks == asks && tells_to(one); });
   }
 
   // Words that tell to do so, not how a thing is: "open the drawer", not "the open drawer", "left
@@ -367,8 +392,9 @@ class Told {
       }
       // "Pick up the book on the right" says which book; "take it to the right" says where to.
       const auto& words = said().words;
-      const bool says_whither = one.words.starts_with("to the") ||
-                                (*at >= 2 && words[*at - 2].text == "to" && words[*at - 1].text == "the");
+      const bool says_whither =
+          one.words.starts_with("to the") ||
+          (*at >= 2 && words[*at - 2].text == "to" && words[*at - 1].text == "the");
       if (!says_whither && tells_which(*at)) continue;
       return "its success measures nothing that tells one side from another";
     }
@@ -527,6 +553,7 @@ class Told {
   const Shared::Text& text_;
   std::optional<Said> said_;
   std::optional<Goal> goal_;
+  std::optional<Clauses> clauses_;
 };
 
 // Words of the table that success is not about.
@@ -544,7 +571,9 @@ bool says_other_goal(const Model& model, const Task& task, Told& told, Reporter&
 
 // Whether the words could speak of a thing in a way that is not its name: by a noun of a phrase, by
 // a value of an attribute, or of several at once.
-bool may_speak_of(const Model& model, const Said& said, ObjectId thing) {
+bool may_speak_of(const Model& model, const Said& said, const Clauses& clauses, ObjectId thing) {
+  // Of words that are all understood it is known.
+  if (clauses.is_whole && !clauses.all.empty()) return clauses.said.contains(thing);
   constexpr auto kSeveral = std::to_array<std::string_view>(
       {"all", "both", "each", "every", "everything", "them", "these", "those", "things", "objects",
        "items", "others", "other", "rest", "two", "three", "four", "together"});
@@ -616,7 +645,7 @@ bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& 
   for (const Goal::Asked& one : asked) {
     if (one.of.size() < 2 || one.of[0].size() != 1 || one.of[1].empty()) continue;
     const ObjectId left_out = *one.of[0].begin();
-    if (may_speak_of(model, told.said(), left_out)) continue;
+    if (may_speak_of(model, told.said(), told.clauses(), left_out)) continue;
     for (const Goal::Asked& other : asked) {
       if (other.predicate != one.predicate || other.of[0].size() != 1 || other.of[1].empty())
         continue;
@@ -633,6 +662,21 @@ bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& 
     }
   }
   return false;
+}
+
+// "put the cube on the towel" of which success is that it lies on the plate.
+bool says_other_clause(const Model& model, const Task& task, Told& told, Shared& shared,
+                       Reporter& reporter) {
+  Shared::ClauseKey key = shared.clause_key(task);
+  if (shared.has_right_clauses(key)) return false;
+  const auto lack = clause_lack(model, task, told.clauses(), told.goal());
+  if (!lack) {
+    if (told.clauses().is_pure) shared.keep_right_clauses(std::move(key));
+    return false;
+  }
+  report_of(reporter, Code::P1202, task, task.say_span, "`" + task.name + "` " + *lack)
+      .label(model.metrics[task.metrics].span, "judged by these");
+  return true;
 }
 
 // What the task does with parts: what fills its roles, what success measures, what its solution
@@ -713,6 +757,7 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     if (says_other_part(model, task, shared, reporter)) continue;
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
       continue;
+    if (says_other_clause(model, task, told, shared, reporter)) continue;
     if (asks_twice(task)) leaves_one_out(model, task, told, reporter);
   }
 }

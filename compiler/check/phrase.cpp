@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "compiler/check/check.h"
+#include "compiler/check/clauses.h"
 #include "compiler/check/starts.h"
 #include "compiler/check/unclear_starts.h"
 #include "compiler/define/in_start.h"
@@ -283,6 +284,26 @@ struct TaskLanguage {
     return false;
   }
 
+  // "both {the goods}" of three: words before the slot that count what it lists.
+  bool check_written_count(const SlotRef& slot) const {
+    if (!model.roles[slot.role].is_set || slot.count != syntax::SlotCount::kPlain) return true;
+    std::string before;
+    for (const Template::Part& part : model.templates[task.say].parts) {
+      if (part.slot && part.slot->span == slot.span) break;
+      before = part.literal;  // of a slot empty
+    }
+    const std::size_t number = task.objects_in(slot.role).size();
+    const std::size_t said = count_at_end(before);
+    if (said == 0 || said == number) return true;
+    reporter
+        .report(Code::P1104, task.place(task.say_span),
+                "the words count otherwise: `" + slot.name.text + "` of `" + task.name + "` is " +
+                    std::to_string(number) + (number == 1 ? " object" : " objects"))
+        .label(slot.span, "these words")
+        .help(count_advice(slot, number, false));
+    return false;
+  }
+
   void absent_fixture(const SlotRef& slot, const std::string& what,
                       const std::string& fixture) const {
     report_of(reporter, Situation::kAbsentSlot, task, slot.span,
@@ -301,7 +322,7 @@ struct TaskLanguage {
     if (slot.avoid && !check_avoided(slot)) return;
     if (slot.role != RoleId::kNone) {
       const std::vector<ObjectId> meant = meant_by(model, task, model.templates[task.say], slot);
-      if (!check_count(slot, meant)) return;
+      if (!check_count(slot, meant) || !check_written_count(slot)) return;
       for (const ObjectId id : meant) {
         check_category(slot, model.objects[id]);
         const Referring words = referring(model, task, id);

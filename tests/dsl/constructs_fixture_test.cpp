@@ -101,7 +101,9 @@ TEST_CASE("predicate: travels of parameters are compared only where both slide o
                         "predicate fuller(p: part, q: part) = travel(p) * range(q) >= 0.5 * "
                         "range(p) * range(q)\n"
                         "metrics m { success = at end " +
-                        success + " }\ntask t like red_on_tray { scene room; metrics m }\n");
+                        success +
+                        " }\ntask t like red_on_tray { scene room; metrics m; say \"open it with "
+                        "{the source}, before {the target}\" }\n");
   };
   CHECK(said("more(chest.drawer, chest.drawer)") == "");
   CHECK(said("fuller(chest.drawer, chest.door)") == "");

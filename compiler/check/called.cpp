@@ -1,0 +1,118 @@
+#include "compiler/check/called.h"
+
+#include <algorithm>
+
+#include "compiler/check/said.h"
+#include "runtime/base/nouns.h"
+
+namespace probe::sema {
+namespace {
+
+// "flat_stove_2": the number tells it from its copies.
+std::vector<std::string> spelled_out(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  std::vector<std::string> words = folded_words(name);
+  while (words.size() > 1 && words.back().find_first_not_of("0123456789") == std::string::npos)
+    words.pop_back();
+  return words;
+}
+
+}  // namespace
+
+Called::Called(const Model& model, const Task& task) : model_(model) {
+  const auto add = [&](ObjectId id) -> Thing& {
+    const Object& object = model.objects[id];
+    Thing thing{id, {}, {}, {}};
+    thing.names.push_back(folded_words(object.text.text));
+    for (const Phrase& phrase : object.phrases)
+      thing.names.push_back(folded_words(phrase.text.text));
+    for (std::size_t i = 0; i < object.values.size(); ++i) {
+      for (const std::uint32_t value : object.values[i]) {
+        for (std::string& word :
+             folded_words(model.attributes[model.attributes.id(i)].values[value]))
+          thing.adjectives.push_back(std::move(word));
+      }
+    }
+    things_.push_back(std::move(thing));
+    return things_.back();
+  };
+  for (const ObjectId id : task.objects()) add(id);
+  for (const FixtureId id : model.scenes[task.scene].fixtures) {
+    const Fixture& fixture = model.fixtures[id];
+    for (const Fixture::Part& part : fixture.parts) {
+      if (part.declared && part.thing != ObjectId::kNone)
+        add(part.thing).names.push_back(spelled_out(fixture.name));
+    }
+    for (const Fixture::OwnRegion& region : fixture.regions) {
+      if (region.thing == ObjectId::kNone) continue;
+      Thing& thing = add(region.thing);
+      // Without a name of its own it is called as its part is, which may be another's.
+      if (region.text.text.empty()) thing.names.clear();
+      thing.names.push_back(spelled_out(fixture.name));
+    }
+  }
+  for (Thing& thing : things_) {
+    for (const auto& name : thing.names) {
+      const auto end = std::find_if(name.begin(), name.end(), may_follow_noun);
+      if (end == name.begin()) continue;
+      thing.nouns.push_back(*(end - 1));
+      thing.adjectives.insert(thing.adjectives.end(), name.begin(), end - 1);
+    }
+  }
+}
+
+bool Called::is_name(const Thing& thing, const std::vector<std::string>& words,
+                     std::size_t length) {
+  return std::any_of(thing.names.begin(), thing.names.end(), [&](const auto& name) {
+    return name.size() == length && std::equal(name.begin(), name.end() - 1, words.begin()) &&
+           is_same_noun(words[length - 1], name.back());
+  });
+}
+
+bool Called::is_noun(const Thing& thing, const std::vector<std::string>& words,
+                     std::size_t length) {
+  const bool has_noun =
+      std::any_of(thing.nouns.begin(), thing.nouns.end(),
+                  [&](const std::string& noun) { return is_same_noun(words[length - 1], noun); });
+  return has_noun &&
+         std::all_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length) - 1,
+                     [&](const std::string& word) {
+                       return std::find(thing.adjectives.begin(), thing.adjectives.end(), word) !=
+                              thing.adjectives.end();
+                     });
+}
+
+Called::Found Called::find(const std::vector<std::string>& words) const {
+  for (std::size_t length = words.size(); length > 0; --length) {
+    Found whole{{}, length, false}, noun{{}, length, false};
+    for (const Thing& thing : things_) {
+      if (is_name(thing, words, length)) whole.of.insert(thing.id);
+      if (is_noun(thing, words, length)) noun.of.insert(thing.id);
+    }
+    Found& found = whole.of.empty() ? noun : whole;
+    if (found.of.empty()) continue;
+    found.is_plural = std::none_of(things_.begin(), things_.end(), [&](const Thing& thing) {
+      return found.of.contains(thing.id) && std::find(thing.nouns.begin(), thing.nouns.end(),
+                                                      words[length - 1]) != thing.nouns.end();
+    });
+    return found;
+  }
+  return {};
+}
+
+bool Called::has_part(const Things& of, ObjectId thing) const {
+  const auto& mine = model_.objects[thing].of;
+  return mine && std::any_of(of.begin(), of.end(), [&](ObjectId one) {
+           const auto& other = model_.objects[one].of;
+           return other && other->fixture == mine->fixture;
+         });
+}
+
+bool Called::is_adjective(std::string_view word) const {
+  return std::any_of(things_.begin(), things_.end(), [&](const Thing& thing) {
+    return std::find(thing.adjectives.begin(), thing.adjectives.end(), word) !=
+           thing.adjectives.end();
+  });
+}
+
+}  // namespace probe::sema

@@ -1,0 +1,19 @@
+// The clauses of an instruction, held to what success is.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "compiler/check/clauses.h"
+#include "compiler/check/goal.h"
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+// What success surely lacks of what some clause asks for, or wants the other way round: "says \"put
+// the cube on the towel\" and success asks `on_top_of` of `cube` and `plate`". Nothing where all of
+// it is there, or it is not certain what is meant.
+std::optional<std::string> clause_lack(const Model& model, const Task& task, const Clauses& clauses,
+                                       const Goal& goal);
+
+}  // namespace probe::sema

@@ -1,0 +1,51 @@
+// What an instruction tells to do, clause by clause: a verb, what is handled, where it goes.
+// English as far as it is certain; a clause with a word that is in no table and names nothing says
+// nothing.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compiler/check/goal.h"
+#include "compiler/model/model.h"
+
+namespace probe::sema {
+
+struct Clause {
+  enum class Does : std::uint8_t { kPuts, kTakes, kOpens, kCloses, kOther } does = Does::kOther;
+  // One after the other what it is done with, by all that the words may mean: several things of
+  // "it", of a noun of several, of a noun in the plural.
+  struct What {
+    Things of;
+    std::size_t count = 0;  // "both cubes", "three cubes"; 0 where nothing counts
+    bool is_back = false;   // "it": something that was spoken of
+  };
+  std::vector<What> what;
+  Things where;         // where it goes, by all that the words may mean
+  bool goes = false;    // it is said where to, in words that are known
+  bool certain = true;  // all of its words were understood
+  std::string words;    // "put the red block on the tray"
+};
+
+struct Clauses {
+  std::vector<Clause> all;
+  bool is_whole = true;  // no word of the instruction is outside of them
+  Things said;           // all that is spoken of
+  // Its words but for slots are those of the tables: it means the same of whatever fills the roles.
+  bool is_pure = true;
+};
+
+// In: a complete task.
+Clauses clauses_of(const Model& model, const Task& task);
+
+// The number that a word is: 2 of "both" and "two"; 0 of others.
+std::size_t number_of(std::string_view word);
+
+// What words count that stand behind them: 3 of "put all three of the"; 0 where nothing does, and
+// of "two of", which are some of more.
+std::size_t count_at_end(std::string_view text);
+
+}  // namespace probe::sema

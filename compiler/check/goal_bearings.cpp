@@ -1,0 +1,188 @@
+#include "compiler/check/goal_bearings.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "compiler/check/goal_things.h"
+
+namespace probe::sema {
+namespace {
+
+// What a goal does to a condition or a number: it has to hold, or to be small; the opposite; or
+// either may do.
+enum class Sense : std::int8_t { kAgainst = -1, kEither = 0, kFor = 1 };
+Sense against(Sense sense) { return static_cast<Sense>(-static_cast<int>(sense)); }
+
+class BearingReader : GoalThings {
+ public:
+  BearingReader(const Model& model, const Task& task, Goal& goal)
+      : GoalThings(model, task), goal_(goal) {}
+
+  void condition(ExprRef ref, const Given& given, Sense sense) {
+    if (ref == kNoExpr) return;
+    const ExprNode& node = at(ref);
+    switch (node.op) {
+      case ExprOp::kNot:
+        condition(node.args[0], given, against(sense));
+        return;
+      case ExprOp::kAny:
+      case ExprOp::kAll:
+      case ExprOp::kNo:
+        each(node, given, node.op == ExprOp::kNo ? against(sense) : sense);
+        return;
+      case ExprOp::kLess:
+      case ExprOp::kLessEqual:
+        compare(node, given, sense);
+        return;
+      case ExprOp::kEqual:
+        compare(node, given, Sense::kEither);
+        return;
+      case ExprOp::kCall:
+        call(node, given, sense,
+             [&](ExprRef body, const Given& inner) { condition(body, inner, sense); });
+        return;
+      case ExprOp::kMeasure:
+        // The one measure that is a condition: a point in a region.
+        is_asked_ = sense != Sense::kAgainst;
+        if (node.args.size() == 2)
+          pairs(things(node.args[0], given), things(node.args[1], given), sense);
+        return;
+      default:
+        for (const ExprRef arg : node.args) condition(arg, given, sense);
+    }
+  }
+
+ private:
+  // One after the other where it is known who they are: what holds of each holds of no two of them.
+  void each(const ExprNode& node, const Given& given, Sense sense) {
+    Given inner = given;
+    const Things among = things_in(node.set, given);
+    if (among.empty()) {
+      bind(inner, node.a, {});
+      condition(node.args[0], inner, sense);
+    }
+    for (const ObjectId one : among) {
+      bind(inner, node.a, {one});
+      condition(node.args[0], inner, sense);
+    }
+  }
+
+  template <typename Look>
+  void call(const ExprNode& node, const Given& given, Sense sense, Look look) {
+    const Given inner = given_to(node, given);
+    if (called_.insert({node.predicate, inner, sense}).second) look(called(node).body, inner);
+  }
+
+  // `a < b` is so where a is small and b is large.
+  void compare(const ExprNode& node, const Given& given, Sense sense) {
+    is_asked_ = sense != Sense::kAgainst;
+    decided_.clear();
+    number(node.args[0], given, sense);
+    number(node.args[1], given, against(sense));
+    Things all = things(node.args[0], given);
+    all.merge(things(node.args[1], given));
+    for (auto a = all.begin(); a != all.end(); ++a) {
+      for (auto b = std::next(a); b != all.end(); ++b) {
+        if (decided_.contains({*a, *b})) continue;
+        Goal::Bearing& bearing = goal_.bearings[{*a, *b}];
+        bearing.other = true;
+        bearing.asked = bearing.asked || sense != Sense::kAgainst;
+      }
+    }
+  }
+
+  void number(ExprRef ref, const Given& given, Sense small) {
+    if (ref == kNoExpr) return;
+    const ExprNode& node = at(ref);
+    switch (node.op) {
+      case ExprOp::kSubtract:
+      case ExprOp::kDivide:
+        number(node.args[0], given, small);
+        number(node.args[1], given, against(small));
+        return;
+      case ExprOp::kNegate:
+        number(node.args[0], given, against(small));
+        return;
+      case ExprOp::kAdd:
+      case ExprOp::kMultiply:
+        for (const ExprRef arg : node.args) number(arg, given, small);
+        return;
+      case ExprOp::kCall:
+        call(node, given, small,
+             [&](ExprRef body, const Given& inner) { number(body, inner, small); });
+        return;
+      case ExprOp::kMeasure:
+        measure(node, given, small);
+        return;
+      default:
+        return;
+    }
+  }
+
+  void measure(const ExprNode& node, const Given& given, Sense small) {
+    switch (node.measure) {
+      case Measure::kDistance:
+      case Measure::kDistanceXy:
+        pairs(things(node.args[0], given), things(node.args[1], given), small);
+        return;
+      case Measure::kImpulse:
+        pairs(things(node.args[0], given), things(node.args[1], given), against(small));
+        return;
+      case Measure::kTravel:
+      case Measure::kSlide:
+      case Measure::kTurn:
+        way(node.args[0], given, small);
+        return;
+      case Measure::kMin:
+      case Measure::kMax:
+      case Measure::kAbs:
+        for (const ExprRef arg : node.args) number(arg, given, small);
+        return;
+      case Measure::kLatest:
+        number(node.args[0], given, Sense::kEither);
+        condition(node.args[1], given, Sense::kEither);
+        return;
+      default:
+        return;
+    }
+  }
+
+  void pairs(const Things& of, const Things& with, Sense near) {
+    for (const ObjectId a : of) {
+      for (const ObjectId b : with) {
+        if (a == b) continue;
+        const std::pair<ObjectId, ObjectId> two = std::minmax(a, b);
+        decided_.insert(two);
+        Goal::Bearing& bearing = goal_.bearings[two];
+        (near == Sense::kFor       ? bearing.near
+         : near == Sense::kAgainst ? bearing.apart
+                                   : bearing.other) = true;
+        bearing.asked = bearing.asked || is_asked_;
+      }
+    }
+  }
+
+  void way(ExprRef joint, const Given& given, Sense small) {
+    const Things moved = things(joint, given);
+    goal_.moves_unnamed = goal_.moves_unnamed || moved.empty();
+    for (const ObjectId part : moved) {
+      Goal::Way& found = goal_.ways[part];
+      (small == Sense::kFor       ? found.closes
+       : small == Sense::kAgainst ? found.opens
+                                  : found.other) = true;
+    }
+  }
+
+  Goal& goal_;
+  bool is_asked_ = true;                                    // what is looked at has to hold
+  std::set<std::tuple<PredicateId, Given, Sense>> called_;  // looked at
+  std::set<std::pair<ObjectId, ObjectId>> decided_;         // by the comparison that is looked at
+};
+
+}  // namespace
+
+void read_bearings(const Model& model, const Task& task, const Metric& metric, Goal& goal) {
+  BearingReader(model, task, goal).condition(metric.expr, Given(metric.variables), Sense::kFor);
+}
+
+}  // namespace probe::sema

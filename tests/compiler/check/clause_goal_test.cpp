@@ -1,0 +1,195 @@
+// Clauses of instructions, each held to what success asks.
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+std::string first_line_of(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+const char* const kPlaces = R"(
+role helper
+role goods: set
+object cube like red { name "cube" }
+object orange like blue { name "orange" }
+object towel like tray { color blue; paint blue; name "towel" }
+object green_cube like red { box 4cm x 3cm x 2cm; name "green cube" }
+object yellow_cube like red { name "yellow cube" }
+object red_cube like red { name "red cube" }
+predicate over(a: object, b: object) = all {
+  distance_xy(a, b) < 5cm
+  height(a) > height(b)
+  impulse(a, b) > 1e-6Ns
+}
+predicate held_in(o: object, r: region) = within(position(o), r)
+predicate far_open(p: part) = travel(p) >= 0.8 * range(p)
+predicate shut(p: part) = travel(p) <= 0.1 * range(p)
+layout row { place source at (0cm, -20cm); place target at (0cm, 0cm)
+place helper at (0cm, 20cm); place towel at (20cm, 0cm); orient by rest; drop 10cm settle 0.5s }
+layout heap { cells ends = grid 2 x 2 at (0cm, 0cm) spread (10cm, 20cm)
+place goods in distinct ends; place target at (0cm, 0cm); orient by rest; drop 10cm settle 0.5s }
+)";
+
+// A cube, a tray and a towel.
+std::string told_of_one(const std::string& goal, const std::string& words) {
+  return first_line_of(test::analyze_with_suite(
+                           std::string(kPlaces) + "metrics m { success = at end " + goal +
+                           " }\nlayout one { place source at (0cm, -20cm); place target at (0cm, "
+                           "0cm); place towel at (20cm, 0cm); orient by rest; drop 10cm settle "
+                           "0.5s }\ntask t like base { layout one; source cube; target tray; "
+                           "metrics m; say \"" +
+                           words + "\" }\n")
+                           ->said());
+}
+
+// And an orange.
+std::string told_of_two(const std::string& goal, const std::string& words) {
+  return first_line_of(test::analyze_with_suite(
+                           std::string(kPlaces) + "metrics m { success = at end " + goal +
+                           " }\ntask t like base { layout row; source cube; helper orange; target "
+                           "tray; metrics m; say \"" +
+                           words + "\" }\n")
+                           ->said());
+}
+
+std::string told_of_chest(const std::string& goal, const std::string& words) {
+  return first_line_of(test::analyze_with_suite(
+                           std::string(test::kChest) + kPlaces + "metrics m { success = at end " +
+                           goal +
+                           " }\nlayout one { place source at (0cm, -20cm); place target at (20cm, "
+                           "-20cm); orient by rest; drop 10cm settle 0.5s }\n"
+                           "task t like base { scene room; layout one; source cube; target tray; "
+                           "metrics m; say \"" +
+                           words + "\" }\n")
+                           ->said());
+}
+
+std::string told_of_three(const std::string& words, const std::string& goods) {
+  return first_line_of(
+      test::analyze_with_suite(std::string(kPlaces) +
+                               "metrics m { success = at end (all g in goods: over(g, target)) }\n"
+                               "task t like base { layout heap; goods " +
+                               goods + "; target tray; metrics m; say \"" + words + "\" }\n")
+          ->said());
+}
+
+}  // namespace
+
+TEST_CASE("what goes where is what success asks of the two") {
+  const std::string goal =
+      "(over(source, target) and over(helper, towel) and once (over(source, target) and not once "
+      "over(helper, towel)))";
+  const std::string wrong =
+      "error[P1202]: `t` says \"put the cube on the towel\" and success asks `over` of `cube` and "
+      "`tray`";
+  for (const std::string words :
+       {"first put the cube on the tray, then the orange on the towel",
+        "put {the source} on {the target} and then put {the helper} on the towel",
+        "put the cube on the tray. After that put the orange on the towel",
+        "pick up the cube and put it on the tray, then pick up the orange and put it on the towel",
+        "on the tray, put the cube, then put the orange on the towel"}) {
+    CAPTURE(words);
+    CHECK(told_of_two(goal, words) == "");
+  }
+  CHECK(told_of_two(goal, "first put the cube on the towel, then the orange on the tray") ==
+        "error[P1202]: `t` says \"put the cube on the towel\" and success asks `over` of `cube` "
+        "and `tray`");
+  CHECK(told_of_two(goal,
+                    "put {the source} on the towel and then put {the helper} on {the target}") ==
+        wrong);
+  CHECK(told_of_two("(over(source, target) and over(helper, towel))",
+                    "put the cube on the towel and the orange on the tray") == wrong);
+  CHECK(told_of_one("over(source, target)",
+                    "put the cube on the towel, not on {avoid the target}") == wrong);
+  // It may be either that goes there, and what is not understood says nothing.
+  CHECK(told_of_one("over(source, target)", "put the cube beside the towel on the tray") == "");
+  CHECK(told_of_one("over(source, target)", "take the cube from the towel to the tray") == "");
+  CHECK(told_of_one("over(source, target)",
+                    "put the cube on the fringe of the towel on the tray") == "");
+}
+
+TEST_CASE("what is put somewhere is something that success speaks of") {
+  CHECK(told_of_two("over(source, target)",
+                    "put {the source} on {the target} and {the helper} on the towel") ==
+        "error[P1202]: `t` says \"the orange on the towel\" and success asks nothing of `orange`");
+  CHECK(told_of_chest("far_open(chest.drawer)",
+                      "open the drawer, take {the source} out and put it on {the target}") ==
+        "error[P1202]: `t` says \"put it on the tray\" and success asks nothing of `cube`");
+  CHECK(told_of_chest("far_open(chest.drawer)",
+                      "open the drawer, take out what is in it and put it on {the target}, "
+                      "{the source}") == "");
+  CHECK(told_of_chest("(far_open(chest.drawer) and over(source, target))",
+                      "open the drawer, take {the source} out and put it on {the target}") == "");
+}
+
+TEST_CASE("words for two are not judged by three") {
+  const std::string three = "green_cube, yellow_cube, red_cube";
+  CHECK(told_of_three("put the green and the yellow cube on the tray", three)
+            .find("and not `red_cube`, of which success asks `over` as well") != std::string::npos);
+  CHECK(told_of_three("put the green, the yellow and the red cube on the tray", three) == "");
+  CHECK(told_of_three("put the cubes on the tray", three) == "");
+  CHECK(told_of_three("put all three cubes on the tray", three) == "");
+  CHECK(told_of_three("put both cubes on the tray", three) ==
+        "error[P1202]: `t` says \"put both cubes on the tray\" and success asks `over` of 3");
+  CHECK(told_of_three("put the green cube and the other cubes on the tray", three) == "");
+}
+
+TEST_CASE("words before a slot of several count as many as there are") {
+  const std::string three = "green_cube, yellow_cube, red_cube", two = "green_cube, yellow_cube";
+  const std::string of_three =
+      "error[P1104]: the words count otherwise: `goods` of `t` is 3 objects";
+  CHECK(told_of_three("put both {the goods} on the tray", three) == of_three);
+  CHECK(told_of_three("put both of {the goods} on the tray", three) == of_three);
+  CHECK(told_of_three("put both {the goods} on the tray", two) == "");
+  CHECK(told_of_three("put all three of {the goods} on the tray", three) == "");
+  CHECK(told_of_three("put all three {goods} on the tray", two) ==
+        "error[P1104]: the words count otherwise: `goods` of `t` is 2 objects");
+  CHECK(told_of_three("put two of {the goods} on the tray", three).find("P1104") ==
+        std::string::npos);
+}
+
+TEST_CASE("what is closed in the end is closed in success") {
+  const std::string nothing =
+      "error[P1202]: `t` says \"close it\" and success asks nothing of how far `chest.drawer` "
+      "has moved";
+  const std::string words = "put {the source} into the drawer and close it";
+  CHECK(told_of_chest("held_in(source, chest.inside)", words) == nothing);
+  CHECK(told_of_chest("(held_in(source, chest.inside) and shut(chest.drawer))", words) == "");
+  CHECK(told_of_chest("(held_in(source, chest.inside) and travel(chest.slide) < 1cm)", words) ==
+        "");
+  CHECK(told_of_chest("(held_in(source, chest.inside) and far_open(chest.drawer))",
+                      "open the drawer, put {the source} in it and close it") ==
+        "error[P1202]: `t` says \"close it\" and success is that `chest.drawer` has moved at least "
+        "so "
+        "far");
+  // Being open is the way there.
+  CHECK(told_of_chest("held_in(source, chest.inside)",
+                      "open the drawer and put {the source} in it") == "");
+  CHECK(told_of_chest("over(source, target)",
+                      "put {the source} on {the target} and open the drawer") ==
+        "error[P1202]: `t` says \"open the drawer\" and success asks nothing of how far "
+        "`chest.drawer` has moved");
+}
+
+TEST_CASE("what goes somewhere is not to be elsewhere") {
+  const std::string words = "put {the source} into the drawer";
+  CHECK(told_of_chest("(not held_in(source, chest.inside))", words) ==
+        "error[P1202]: `t` says \"put the cube into the drawer\" and success wants `cube` not to "
+        "be there");
+  CHECK(told_of_chest("held_in(source, chest.inside)", words) == "");
+  CHECK(told_of_chest("held_in(source, chest.inside)",
+                      "open the drawer and put {the source} inside") == "");
+  CHECK(told_of_chest("over(source, target)", "open the drawer and put {the source} inside") ==
+        "error[P1202]: `t` says \"put the cube inside\" and success asks `over` of `cube` and "
+        "`tray`");
+  CHECK(told_of_one("(not over(source, target))", "put {the source} on {the target}") ==
+        "error[P1202]: `t` says \"put the cube on the tray\" and success wants `cube` not to be "
+        "there");
+  CHECK(told_of_one("(not over(source, target))", "take {the source} off {the target}") == "");
+  CHECK(told_of_one("distance(source, target) > 10cm", "put {the source} away from {the target}") ==
+        "");
+  CHECK(told_of_one("(not once not over(source, target))", "put {the source} on {the target}") ==
+        "");
+}
