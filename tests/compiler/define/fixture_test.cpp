@@ -331,8 +331,8 @@ TEST_CASE("what stands on a surface goes with its height, fixtures with joints, 
 TEST_CASE("in a solution a joint stands for the part that it moves, as in measures") {
   const auto a = with_chest(
       "metrics pulled { success = at end travel(chest.slide) > 10cm }\n"
-      "task t like red_on_tray { scene room; metrics pulled; solution { open chest.slide; close "
-      "chest.drawer } }");
+      "task t like red_on_tray { scene room; metrics pulled; say \"open it with {the source}, "
+      "before {the target}\"; solution { open chest.slide; close chest.drawer } }");
   CHECK_MESSAGE(a->codes() == "", a->said());
   const sema::Task& task = a->task("t");
   REQUIRE(task.solution.size() == 2);
