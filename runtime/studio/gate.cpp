@@ -43,8 +43,8 @@ std::optional<wire::Page> Gate::refuse(const wire::Visit& visit) const {
     return no(403, "asked by a page of another origin");
   const std::string_view target = without_query(visit.target);
   const std::size_t end = target.find('/', 1);
-  const std::string_view first = target.substr(
-      std::min<std::size_t>(1, target.size()), end == target.npos ? target.npos : end - 1);
+  const std::string_view first = target.substr(std::min<std::size_t>(1, target.size()),
+                                               end == target.npos ? target.npos : end - 1);
   if (!target.starts_with('/') || !is_equal(first, token)) {
     return no(403,
               "the token is missing or another one's. Open the whole address that the program "

@@ -31,16 +31,15 @@ class LiveEar final : public wire::Ear {
       : folder_(folder),
         seat_(seat),
         mouth_(std::move(mouth)),
-        painter_(std::move(setting), [mouth = mouth_](wire::Frame frame) {
-          mouth->say(std::move(frame));
-        }),
+        painter_(std::move(setting),
+                 [mouth = mouth_](wire::Frame frame) { mouth->say(std::move(frame)); }),
         player_([mouth = mouth_](wire::Frame frame) { mouth->say(std::move(frame)); },
                 [mouth = mouth_] { return mouth->unread(); }) {}
   ~LiveEar() override { seat_.leave(mouth_); }
 
   void hear(const wire::Frame& frame) override {
-    const Json json = Json::parse(std::string_view(
-        reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()));
+    const Json json = Json::parse(
+        std::string_view(reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()));
     if (!json.is_object())
       return say({{"kind", "refused"}, {"message", "a message that is no JSON object"}});
     const std::string what = json.value("do", "");
@@ -52,7 +51,8 @@ class LiveEar final : public wire::Ear {
       seat_.take_over(mouth_);
       return welcome();
     }
-    if (!is_seated_)
+    // What a page said before another took over may still come.
+    if (!seat_.is_of(mouth_))
       return say({{"kind", "refused"}, {"message", "another page shows this studio"}});
     if (what == "open") return open(json.value("path", ""));
     if (what == "save") return save(json);
@@ -70,7 +70,6 @@ class LiveEar final : public wire::Ear {
   void say(const Json& json) { mouth_->say(message(json)); }
 
   void welcome() {
-    is_seated_ = true;
     Json texts = Json::array();
     for (const std::string& path : folder_.texts()) texts.push_back(path);
     say({{"kind", "welcome"},
@@ -156,7 +155,6 @@ class LiveEar final : public wire::Ear {
   Folder& folder_;
   Seat& seat_;
   const std::shared_ptr<wire::Mouth> mouth_;
-  bool is_seated_ = false;
   Painter painter_;
   Player player_;
 };
@@ -182,6 +180,11 @@ void Seat::take_over(const std::shared_ptr<wire::Mouth>& mouth) {
 void Seat::leave(const std::shared_ptr<wire::Mouth>& mouth) {
   const std::lock_guard lock(mutex_);
   if (taken_ == mouth) taken_.reset();
+}
+
+bool Seat::is_of(const std::shared_ptr<wire::Mouth>& mouth) const {
+  const std::lock_guard lock(mutex_);
+  return taken_ == mouth;
 }
 
 std::unique_ptr<wire::Ear> make_live_ear(Folder& folder, Seat& seat, const Setting& setting,

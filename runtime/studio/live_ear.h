@@ -19,14 +19,15 @@ class Seat {
   // Whoever sits there is told and goes.
   void take_over(const std::shared_ptr<wire::Mouth>& mouth);
   void leave(const std::shared_ptr<wire::Mouth>& mouth);
+  bool is_of(const std::shared_ptr<wire::Mouth>& mouth) const;
 
  private:
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::shared_ptr<wire::Mouth> taken_;
 };
 
-// do: hello, take, open {path}, save {path, text, over}, news {paths}, show {id, texts, task, start},
-// play {task, start, policy, seed}, stop, look {step}, keep {step}, why {metric}.
+// do: hello, take, open {path}, save {path, text, over}, news {paths}, show {id, texts, task,
+// start}, play {task, start, policy, seed}, stop, look {step}, keep {step}, why {metric}.
 std::unique_ptr<wire::Ear> make_live_ear(Folder& folder, Seat& seat, const Setting& setting,
                                          std::shared_ptr<wire::Mouth> mouth);
 

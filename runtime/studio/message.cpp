@@ -8,9 +8,8 @@ wire::Frame picture_message(Json json, std::span<const stage::CameraFrame> frame
   Json cameras = Json::array();
   std::size_t pixels = 0;
   for (const stage::CameraFrame& seen : frames) {
-    cameras.push_back({{"name", seen.camera},
-                       {"width", seen.frame.width},
-                       {"height", seen.frame.height}});
+    cameras.push_back(
+        {{"name", seen.camera}, {"width", seen.frame.width}, {"height", seen.frame.height}});
     pixels += seen.frame.rgb.size() / 3;
   }
   json["cameras"] = std::move(cameras);

@@ -7,8 +7,8 @@
 namespace probe::studio {
 
 struct PageFile {
-  std::string_view name;  // "index.html"
-  std::string_view type;  // as HTTP says it
+  std::string_view name;                   // "index.html"
+  std::string_view type;                   // as HTTP says it
   std::span<const std::string_view> gzip;  // its bytes, compressed, in pieces
 };
 

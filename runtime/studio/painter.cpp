@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/asset_root.h"
+#include "runtime/base/file.h"
 #include "runtime/compile/files.h"
 #include "runtime/inspect/svg.h"
 #include "runtime/inspect/top_view.h"
@@ -66,7 +67,7 @@ void Painter::say(const Wish& wish, Json json) const {
 }
 
 void Painter::paint(const Wish& wish) {
-  const bool is_news = shown_ == nullptr || wish.texts != texts_;
+  const bool is_news = shown_ == nullptr || wish.texts != texts_ || is_changed_on_disk();
   if (is_news && !compile(wish)) return;
   const plan::Plan& plan = shown_->plan;
   const auto task = find_shown(*shown_, wish.task);
@@ -84,6 +85,15 @@ void Painter::paint(const Wish& wish) {
   if (stop_ || top_of_ == name) return;
   draw_top(wish, *task);
   top_of_ = name;
+}
+
+// Another program may have written what the text uses.
+bool Painter::is_changed_on_disk() const {
+  return std::ranges::any_of(read_, [&](const auto& file) {
+    if (texts_.contains(file.first)) return false;
+    const auto now = read_file(file.first);
+    return !now || *now != file.second;
+  });
 }
 
 bool Painter::compile(const Wish& wish) {
@@ -121,9 +131,14 @@ bool Painter::compile(const Wish& wish) {
     return false;
   }
   std::vector<bool> own = own_tasks(*plan, setting_.file);
-  auto shown = std::make_shared<const Shown>(Shown{std::move(*plan), std::move(*root),
-                                                   std::move(compiled->referring), std::move(own)});
+  auto shown = std::make_shared<const Shown>(
+      Shown{std::move(*plan), std::move(*root), std::move(compiled->referring), std::move(own)});
   texts_ = wish.texts;
+  read_.clear();
+  for (std::uint32_t i = 0; i < compiled->sources.size(); ++i) {
+    const SourceFile& file = compiled->sources.file(FileId{i});
+    read_.emplace(file.name(), file.text());
+  }
   is_told_ = false;
   top_of_.clear();
   const std::lock_guard lock(mutex_);

@@ -20,8 +20,8 @@
 namespace probe::studio {
 
 struct Setting {
-  std::string file;     // the text to show
-  std::string assets;   // as of compile::FilesRequest
+  std::string file;    // the text to show
+  std::string assets;  // as of compile::FilesRequest
   std::string library;
 };
 
@@ -35,7 +35,7 @@ struct Wish {
 // Answers, in this order, each with the wish's `id`:
 //   {kind: "broken", errors, message, file, line, column}        and nothing after it
 //   picture {kind: "picture", task, start, size: "small" | "full"}
-//   {kind: "tasks", task, start, summary}                        when the text is another
+//   {kind: "tasks", task, summary}                               when the text is another
 //   {kind: "top", task, svg} or {kind: "top", task, message}     when text or task are others
 //   {kind: "failed", task, message}                              in place of a picture
 class Painter {
@@ -52,6 +52,7 @@ class Painter {
  private:
   void run();
   void paint(const Wish& wish);
+  bool is_changed_on_disk() const;
   bool compile(const Wish& wish);
   Status draw(const Wish& wish, std::uint32_t task);
   void draw_top(const Wish& wish, std::uint32_t task);
@@ -67,6 +68,7 @@ class Painter {
   std::shared_ptr<const Shown> shown_;
   // Of the thread alone: what it told last, and its world.
   std::map<std::string, std::string> texts_;
+  std::map<std::string, std::string> read_;  // the files of that text, as they were
   bool is_told_ = false;
   std::string top_of_;
   struct Loaded {

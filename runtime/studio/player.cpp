@@ -82,9 +82,8 @@ void Player::say(Json json) const { tell_(message(json)); }
 void Player::play(std::shared_ptr<const Shown> shown, PlayWish wish) {
   stop();
   stop_ = false;
-  thread_ = std::thread([this, shown = std::move(shown), wish = std::move(wish)] {
-    run(shown, wish);
-  });
+  thread_ =
+      std::thread([this, shown = std::move(shown), wish = std::move(wish)] { run(shown, wish); });
 }
 
 void Player::run(std::shared_ptr<const Shown> shown, const PlayWish& wish) {
@@ -110,10 +109,12 @@ Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
   episode.wish = wish;
   PROBE_ASSIGN(const auto choice, run::choose_policy(wish.policy));
   if (choice.traits.recorded)
-    return Failure{Fault::kUsage, "has the actions of a run, which is of another plan", wish.policy};
+    return Failure{Fault::kUsage, "has the actions of a run, which is of another plan",
+                   wish.policy};
   PROBE_ASSIGN(const auto policy, run::make_policy(choice));
   const std::uint32_t tasks[] = {*task};
-  PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, episode.shown->asset_root, tasks));
+  PROBE_ASSIGN(const auto assets,
+               stage::SharedAssets::load(plan, episode.shown->asset_root, tasks));
   PROBE_ASSIGN(episode.stage, stage::Stage::create(plan, *task, assets));
   const run::EpisodeJob job{*task, wish.start, wish.seed};
   const store::TraceHeader header =
@@ -151,8 +152,7 @@ Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
 
 void Player::look(int step) {
   const std::lock_guard lock(mutex_);
-  if (episode_ == nullptr || step < 0 ||
-      static_cast<std::size_t>(step) >= episode_->states.size())
+  if (episode_ == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode_->states.size())
     return;
   stage::Stage& stage = *episode_->stage;
   auto restored = stage.restore(episode_->states[static_cast<std::size_t>(step)]);
@@ -164,8 +164,7 @@ void Player::look(int step) {
 
 std::optional<Player::Start> Player::start_at(int step) {
   const std::lock_guard lock(mutex_);
-  if (episode_ == nullptr || step < 0 ||
-      static_cast<std::size_t>(step) >= episode_->states.size())
+  if (episode_ == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode_->states.size())
     return std::nullopt;
   stage::Stage& stage = *episode_->stage;
   if (!stage.restore(episode_->states[static_cast<std::size_t>(step)])) return std::nullopt;
@@ -193,8 +192,7 @@ std::optional<Player::Start> Player::start_at(int step) {
 void Player::why(const std::string& metric) {
   const std::lock_guard lock(mutex_);
   if (episode_ == nullptr) return say({{"kind", "why"}, {"message", "no episode was played"}});
-  auto metrics =
-      rejudge::explain(episode_->shown->plan, episode_->task, episode_->trace, metric);
+  auto metrics = rejudge::explain(episode_->shown->plan, episode_->task, episode_->trace, metric);
   if (!metrics) return say({{"kind", "why"}, {"message", to_text(metrics.failure())}});
   rejudge::EpisodeWhy why;
   why.task = episode_->trace.header.task;

@@ -27,12 +27,13 @@ struct PlayWish {
 
 // Answers:
 //   {kind: "playing", task, start, policy, prompt, horizon, hz, metrics[name]}
-//   picture {kind: "step", step, values[]}         as it happens; some have no picture when the page
+//   picture {kind: "step", step, values[]}         as it happens; some have no picture when the
+//   page
 //                                                  is slow: {kind: "step", ...} as text
-//   {kind: "played", steps, invalid, remark, success, seconds}
-//   {kind: "stopped", message}                     when it was ended or could not be begun
-//   picture {kind: "moment", step}                 of look()
-//   {kind: "why", metrics[...]} or {kind: "why", message}
+//   {kind: "played", steps, invalid, remark, seconds, values[]}   the values as the metrics of
+//   "playing" {kind: "stopped", message}                     when it was ended or could not be
+//   begun picture {kind: "moment", step}                 of look() {kind: "why", metrics[...]} or
+//   {kind: "why", message}
 class Player {
  public:
   using Tell = std::function<void(wire::Frame)>;

@@ -29,9 +29,8 @@ Json task_json(const Shown& shown, const plan::TaskRecord& task) {
   Json out = Json::object();
   out["name"] = name;
   out["prompt"] = plan.text(task.prompt);
-  out["baseline"] = task.baseline == plan::kNone
-                        ? Json()
-                        : Json(plan.text(plan.tasks()[task.baseline].name));
+  out["baseline"] =
+      task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   out["axes"] = plan::moved_axes(plan.tables(), task);
   out["starts"] = task.episodes.count;
   out["horizon"] = task.horizon;

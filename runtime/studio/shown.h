@@ -29,9 +29,9 @@ std::vector<bool> own_tasks(const plan::Plan& plan, const std::string& file);
 // Nothing: the text has no tasks.
 std::optional<std::uint32_t> find_shown(const Shown& shown, const std::string& name);
 
-// {tasks: [{name, is_own, prompt, baseline (null: none), axes[], starts, horizon (steps), hz, metrics[{name,
-// truth}], words[{words, role, object}]}], episodes, suites[{name, tasks, episodes}]}. `words` are of
-// the prompt that mean an object, in the order of the roles.
+// {tasks: [{name, is_own, prompt, baseline (null: none), axes[], starts, horizon (steps), hz,
+// metrics[{name, truth}], words[{words, role, object}]}], episodes, suites[{name, tasks,
+// episodes}]}. `words` are of the prompt that mean an object, in the order of the roles.
 Json summary(const Shown& shown);
 
 }  // namespace probe::studio

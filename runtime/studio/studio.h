@@ -9,9 +9,9 @@
 namespace probe::studio {
 
 struct StudioOptions {
-  std::string file;           // the text; it need not be there yet
+  std::string file;             // the text; it need not be there yet
   std::string assets, library;  // as of compile::FilesRequest
-  std::string port = "0";     // 0: any free one
+  std::string port = "0";       // 0: any free one
 };
 
 class Studio {

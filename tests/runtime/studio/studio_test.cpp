@@ -68,7 +68,8 @@ class Page {
     return *answer;
   }
   Result<std::unique_ptr<wire::WebSocket>> talk(
-      const std::string& name, std::vector<std::pair<std::string, std::string>> headers = {}) const {
+      const std::string& name,
+      std::vector<std::pair<std::string, std::string>> headers = {}) const {
     wire::Endpoint there = endpoint;
     there.path = path_ + name;
     wire::WebSocketOptions with;
@@ -107,7 +108,8 @@ Heard hear(wire::WebSocket& socket, const std::string& kind) {
     } else {
       const auto& bytes = message->bytes;
       const std::size_t size = bytes[0] | bytes[1] << 8 | bytes[2] << 16;
-      heard.json = Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()) + 4, size));
+      heard.json =
+          Json::parse(std::string_view(reinterpret_cast<const char*>(bytes.data()) + 4, size));
       heard.pixels = bytes.size() - 4 - size;
     }
     if (heard.json.value("kind", "") == kind) return heard;
@@ -216,6 +218,26 @@ TEST_CASE("what is typed and not saved is what is shown; a mistake says where it
   CHECK(hear(*live, "failed").json["message"] == "the text has no task yet");
 }
 
+TEST_CASE("a used text that another program writes is shown as it is now") {
+  const Page page;
+  const auto write = [&](const std::string& name, const std::string& text) {
+    std::ofstream(page.path(name), std::ios::binary) << text;
+  };
+  write("used.probe", "light lamp { ambient 0.5 }\n");
+  auto live = page.talk("live").value();
+  say(*live, {{"do", "hello"}});
+  Json texts = Json::object();
+  texts[page.path("my.probe")] = "use \"used.probe\"\n" + std::string(kText);
+  const auto show = [&](int id) {
+    say(*live, {{"do", "show"}, {"id", id}, {"texts", texts}, {"task", ""}, {"start", 0}});
+  };
+  show(1);
+  hear(*live, "top");
+  write("used.probe", "light lamp { ambient 0.5 \n");
+  show(2);
+  CHECK(hear(*live, "broken").json["id"] == 2);
+}
+
 TEST_CASE("an episode is watched, looked at again and explained") {
   const Page page;
   auto live = page.talk("live").value();
@@ -320,13 +342,21 @@ TEST_CASE("the editor's language server answers for texts of the folder alone") 
   };
   CHECK(ask("initialize", {{"rootUri", "file:///"}, {"capabilities", Json::object()}})
             .contains("result"));
-  open("/etc/hosts.probe", "suite x { }");
+  // Another spelling of the same letters is the same message.
+  const std::string hosts = lsp::uri_of("/etc/hosts.probe");
+  const std::string spelled =
+      R"({"jsonrpc": "2.0", "method": "textDocument/d\u0069dOpen", "params": {"textDocument": )"
+      R"({"uri": ")" +
+      hosts + R"(", "version": 1, "text": "suite x { }"}}})";
+  REQUIRE(text->send(
+      std::span(reinterpret_cast<const std::uint8_t*>(spelled.data()), spelled.size()), kLong));
   while (true) {
     const auto message = text->receive(kLong);
     REQUIRE(message);
     const Json json = Json::parse(message->text());
     if (json.value("method", "") != "window/showMessage") continue;
-    CHECK(json["params"]["message"].text().starts_with("/etc/hosts.probe is no text of the folder"));
+    CHECK(
+        json["params"]["message"].text().starts_with("/etc/hosts.probe is no text of the folder"));
     break;
   }
   open(page.path("my.probe"), kText);
@@ -351,8 +381,7 @@ TEST_CASE("the editor's language server answers for texts of the folder alone") 
 
 TEST_CASE("a port that is taken is told") {
   const Page page;
-  const auto again =
-      studio::Studio::start(options(page.path("my.probe"), page.endpoint.port));
+  const auto again = studio::Studio::start(options(page.path("my.probe"), page.endpoint.port));
   REQUIRE_FALSE(again);
   CHECK(again.failure().code == Fault::kUsage);
 }
