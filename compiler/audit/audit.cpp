@@ -10,6 +10,8 @@
 
 #include "compiler/audit/questions.h"
 #include "compiler/audit/rules.h"
+#include "runtime/base/utf8.h"
+#include "runtime/base/words.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/derived_solution.h"
@@ -29,7 +31,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 23> kKinds = {{
+constexpr std::array<KindName, 24> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -49,6 +51,8 @@ constexpr std::array<KindName, 23> kKinds = {{
      "success of an object that lies on a fixture beside the target"},
     {Kind::kHeld, "held", "success of an object that is still held above the target"},
     {Kind::kHoldsAtStart, "holds_at_start", "success that holds before anything moves"},
+    {Kind::kSwappedOrder, "swapped_order",
+     "success that does not care for the order that the instruction says"},
     {Kind::kSolution, "solution", "solutions that do not do what success asks for"},
     {Kind::kNamesAnswer, "names_answer", "questions whose words name the answer"},
     {Kind::kOneAnswer, "one_answer", "questions with one answer throughout"},
@@ -322,6 +326,7 @@ class Auditor {
         if (held) add_rule(kHeld, index);
         PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
         if (begun) add_rule(kBegun, index);
+        PROBE_TRY(find_swapped_order(index));
         PROBE_ASSIGN(std::string flaw, vm::flaw_of_solution(plan_, index));
         if (!flaw.empty()) {
           Finding finding;
@@ -332,6 +337,48 @@ class Auditor {
           add(std::move(finding));
         }
       }
+    }
+    return {};
+  }
+
+  // "First A, then B" of which success is the same when B is put first.
+  Status find_swapped_order(std::uint32_t index) {
+    const plan::TaskRecord& task = plan_.tasks()[index];
+    const std::string prompt = fold_case(plan_.text(task.prompt));
+    std::vector<std::size_t> things;
+    for (const plan::BodyRecord& body : plan_.bodies(task)) {
+      if (static_cast<plan::BodyKind>(body.kind) != plan::BodyKind::kObject) continue;
+      const std::string name(plan_.text(plan_.objects()[body.index].name));
+      const auto called = compilation_.called.find(name);
+      if (called == compilation_.called.end()) continue;
+      const std::size_t at = prompt.find(fold_case(called->second));
+      if (at != prompt.npos) things.push_back(at);
+    }
+    const std::string_view word = order_word(prompt, things);
+    if (word.empty()) return {};
+    PROBE_ASSIGN(const bool is_either, vm::holds_in_either_order(plan_, index));
+    if (!is_either) return {};
+    Finding finding;
+    finding.kind = Kind::kSwappedOrder;
+    finding.tasks = {name_of(index)};
+    finding.message = fmt::format("`{}` says \"{}\", and `success` is true whichever is put first",
+                                  name_of(index), word);
+    finding.place = task_place(index);
+    add(std::move(finding));
+    return {};
+  }
+
+  // A word of order that stands between two things that are spoken of.
+  static std::string_view order_word(const std::string& prompt,
+                                     const std::vector<std::size_t>& things) {
+    constexpr auto kWords = std::to_array<std::string_view>(
+        {"then", "afterwards", "after that", "followed by", "finally", "before", "after"});
+    for (const std::string_view word : kWords) {
+      if (!has_words(prompt, word)) continue;
+      const std::size_t at = prompt.find(word);
+      const auto is_before = [&](std::size_t thing) { return thing < at; };
+      if (std::ranges::any_of(things, is_before) && !std::ranges::all_of(things, is_before))
+        return word;
     }
     return {};
   }

@@ -34,6 +34,7 @@ enum class Kind : std::uint8_t {
   kOnFixture,
   kHeld,
   kHoldsAtStart,
+  kSwappedOrder,
   kSolution,
   kNamesAnswer,
   kOneAnswer,

@@ -8,6 +8,7 @@
 #include "runtime/plan/roles.h"
 #include "runtime/vm/claims.h"
 #include "runtime/vm/made_up.h"
+#include "runtime/vm/placed_world.h"
 
 namespace probe::audit {
 namespace {
@@ -27,6 +28,19 @@ Vec3 beside(const vm::MadeUpWorld& world) {
          (along_x ? Vec3(apart, 0, 0) : Vec3(0, apart, 0));
 }
 
+// Whether the source may lie on the target, or in it: else it is not there that success wants it.
+Result<bool> may_lie_there(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  for (const auto relation : {plan::SkillRelation::kOn, plan::SkillRelation::kIn}) {
+    vm::MadeUpWorld world = vm::make_up_world(plan, task);
+    vm::put_at(plan, plan.tasks()[task], world.source, {world.target, plan::kNone, relation}, 0,
+               &world);
+    vm::put_contacts_in_order(&world);
+    PROBE_ASSIGN(const bool holds, vm::judge_world(plan, task, success, std::move(world)));
+    if (holds) return true;
+  }
+  return false;
+}
+
 // Rules about one thing that goes to another are asked of no other task.
 bool has_both(const plan::Plan& plan, std::uint32_t task) {
   return plan::roles_of(plan.tables(), plan.tasks()[task]).has_both();
@@ -37,6 +51,10 @@ bool has_both(const plan::Plan& plan, std::uint32_t task) {
 Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong) {
   if (!has_both(plan, task)) return false;
   vm::MadeUpWorld world = vm::make_up_world(plan, task);
+  // What is so before anything was moved is not so because the target was: things are not where
+  // they begin here, as in a drawer.
+  PROBE_ASSIGN(const bool is_so_anyway, vm::judge_world(plan, task, wrong, world));
+  if (is_so_anyway) return false;
   world.put(world.target, world.sample.bodies[world.target].position + Vec3(0.1, 0, 0));
   return vm::judge_world(plan, task, wrong, std::move(world));
 }
@@ -50,7 +68,8 @@ Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint
   world.put(world.source, at);
   for (const std::uint16_t body : {world.source, world.target})
     world.press_down(body, world.surface);
-  return vm::judge_world(plan, task, success, std::move(world));
+  PROBE_ASSIGN(const bool holds, vm::judge_world(plan, task, success, std::move(world)));
+  return holds ? may_lie_there(plan, task, success) : Result<bool>(false);
 }
 
 Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {

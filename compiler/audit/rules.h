@@ -10,11 +10,11 @@
 
 namespace probe::audit {
 
-// Whether metric `wrong` is true when the target alone was moved, by 10 cm.
+// Whether metric `wrong` is true when the target alone was moved, by 10 cm, and not before.
 Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong);
 
 // Whether metric `success` is true of a source that lies on the surface beside the target, so that
-// their boxes do not overlap. Never of a scene with a fixture, where the surface is not what things
+// their boxes do not overlap, where one that lies on the target or in it passes as well. Never of a scene with a fixture, where the surface is not what things
 // lie on.
 Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 

@@ -14,13 +14,14 @@
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/made_up.h"
+#include "runtime/vm/placed_world.h"
 
 namespace probe::vm {
 namespace {
 
 constexpr double kAngleStep = std::numbers::pi / 36;  // rad: how finely a wanted turn is found
 constexpr double kTurnRoom = 2;                       // steps more than the least that is enough
-constexpr double kInner = 5e-3;                       // m: of a hollow thing
+constexpr std::size_t kMostPuts = 150;                // of which all pairs are asked about
 constexpr double kHalfOpen = 0.5;  // of the way: what is less open is opened to put something in
 
 // A part's joint at one of its ends, or turned by an angle.
@@ -32,21 +33,15 @@ struct JointMove {
   double amount = 0;  // rad from where it is closed, of a turn
 };
 
-// Where things are put: onto a body, or into a region.
-struct Place {
-  std::uint32_t to = plan::kNone, region = plan::kNone;
-  plan::SkillRelation relation = plan::SkillRelation::kOn;
-};
-
 // Where things are when skills are done: each object in its place, joints where they were moved to.
 struct Arranged {
-  std::vector<std::pair<std::uint32_t, Place>> objects;
+  std::vector<std::pair<std::uint32_t, PutPlace>> objects;
   std::vector<JointMove> joints;
 };
 
 struct Bundle {
   std::vector<std::uint32_t> objects;
-  Place place;
+  PutPlace place;
   std::vector<JointMove> joints;
   std::size_t size() const { return objects.size() + joints.size(); }
   Arranged arranged() const {
@@ -78,7 +73,36 @@ class Deriver {
       PROBE_ASSIGN(const Bundle least, without_needless(bundle));
       return skills_of(least);
     }
-    return none;
+    return in_turn();
+  }
+
+  // Whether success is true as well when what is put first and what is put next are put the other
+  // way round. False of skills that put fewer than two things, or of which it cannot be told.
+  Result<bool> holds_either_way(std::span<const plan::SkillRecord> skills) {
+    if (plan_.episodes(record_).empty()) return false;
+    std::vector<std::pair<std::uint32_t, PutPlace>> puts;
+    find_joint_moves();
+    std::vector<JointMove> joints;
+    for (const plan::SkillRecord& skill : skills) {
+      const auto kind = static_cast<plan::Skill>(skill.skill);
+      if (kind == plan::Skill::kPut) {
+        puts.emplace_back(skill.body, place_of(skill));
+        continue;
+      }
+      const Arranged done{puts, joints};
+      const auto move = is_joint_skill(kind) ? move_of(skill, done) : std::nullopt;
+      if (!move) return false;
+      std::erase_if(joints, [&](const JointMove& other) { return other.joint == move->joint; });
+      joints.push_back(*move);
+    }
+    if (puts.size() != 2 || puts[0].first == puts[1].first) return false;
+    for (int way = 0; way < 2; ++way) {
+      const std::vector<Arranged> stages = {{{puts[0]}, {}}, {puts, {}}, {puts, joints}};
+      PROBE_ASSIGN(const bool is_success, holds_through(stages));
+      if (!is_success) return false;
+      std::swap(puts[0], puts[1]);
+    }
+    return true;
   }
 
   // What is amiss with skills that were said; empty where nothing is, or where that cannot be found
@@ -87,9 +111,10 @@ class Deriver {
     if (plan_.episodes(record_).empty()) return std::string();
     find_joint_moves();
     Arranged done;
+    std::vector<Arranged> stages;
     for (const plan::SkillRecord& skill : said) {
       const auto place =
-          std::ranges::find(done.objects, skill.body, &std::pair<std::uint32_t, Place>::first);
+          std::ranges::find(done.objects, skill.body, &std::pair<std::uint32_t, PutPlace>::first);
       switch (static_cast<plan::Skill>(skill.skill)) {
         case plan::Skill::kPick:
           if (place != done.objects.end()) done.objects.erase(place);
@@ -99,9 +124,7 @@ class Deriver {
             return fmt::format("`{}` goes into what is closed then",
                                plan::skill_text(plan_.tables(), skill));
           if (place != done.objects.end()) done.objects.erase(place);
-          done.objects.push_back(
-              {skill.body,
-               {skill.to, skill.region, static_cast<plan::SkillRelation>(skill.relation)}});
+          done.objects.emplace_back(skill.body, place_of(skill));
           break;
         }
         case plan::Skill::kOpen:
@@ -118,6 +141,7 @@ class Deriver {
         case plan::Skill::kPush:
           return std::string();  // where things are then is not known
       }
+      stages.push_back(done);
     }
     // What is held at the end is where the hand is.
     if (static_cast<plan::Skill>(said.back().skill) == plan::Skill::kPick) return std::string();
@@ -125,6 +149,8 @@ class Deriver {
       PROBE_ASSIGN(const bool is_success, holds_with(done, handled));
       if (is_success) return std::string();
     }
+    PROBE_ASSIGN(const bool is_success_in_turn, holds_through(stages));
+    if (is_success_in_turn) return std::string();
     moves_.clear();
     places_.clear();
     PROBE_ASSIGN(const auto derived, run());
@@ -136,6 +162,64 @@ class Deriver {
   }
 
  private:
+  static PutPlace place_of(const plan::SkillRecord& put) {
+    return {put.to, put.region, static_cast<plan::SkillRelation>(put.relation)};
+  }
+  static bool is_joint_skill(plan::Skill skill) {
+    return skill == plan::Skill::kOpen || skill == plan::Skill::kClose ||
+           skill == plan::Skill::kTurn;
+  }
+
+  // Those that are put somewhere: all that have a role but the target, and no distractors.
+  std::vector<std::uint32_t> moved_objects() const {
+    std::vector<std::uint32_t> moved;
+    for (std::uint32_t o = 0; o < roles_.objects; ++o) {
+      const bool has_role = !plan::role_of_body(plan_.tables(), roles_, o).empty();
+      if (has_role && o != roles_.target && !roles_.is_distractor(o)) moved.push_back(o);
+    }
+    return moved;
+  }
+
+  // Two things, each to a place of its own, or one after the other, where no bundle makes success.
+  Result<std::vector<plan::SkillRecord>> in_turn() const {
+    std::vector<plan::SkillRecord> none;
+    const std::vector<std::uint32_t> moved = moved_objects();
+    using Put = std::pair<std::uint32_t, PutPlace>;
+    std::vector<Put> puts;
+    for (const std::uint32_t object : moved) {
+      for (const PutPlace& place : places_) {
+        if (place.relation == plan::SkillRelation::kBeside) continue;
+        plan::SkillRecord put = put_of(object, place);
+        if (body_of(place) != object && !goes_into_closed(put, {}))
+          puts.emplace_back(object, place);
+      }
+    }
+    if (moved.size() < 2 || puts.size() > kMostPuts) return none;
+    for (const Put& first : puts) {
+      for (const Put& second : puts) {
+        if (first.first == second.first || body_of(first.second) == second.first) continue;
+        const std::vector<Arranged> stages = {{{first}, {}}, {{first, second}, {}}};
+        PROBE_ASSIGN(const bool is_enough, holds_through(stages));
+        if (is_enough)
+          return std::vector{put_of(first.first, first.second),
+                             put_of(second.first, second.second)};
+      }
+    }
+    return none;
+  }
+
+  // What is moved when a place is moved.
+  std::uint32_t body_of(const PutPlace& place) const {
+    return place.region == plan::kNone ? place.to : *owner_of(plan_.regions()[place.region]);
+  }
+  plan::SkillRecord put_of(std::uint32_t object, const PutPlace& place) const {
+    plan::SkillRecord put = record_of(plan::Skill::kPut, object);
+    put.relation = static_cast<std::uint32_t>(place.relation);
+    put.to = place.to;
+    put.region = place.region;
+    return put;
+  }
+
   double position_of(std::size_t joint, const Arranged& done) const {
     const auto moved = std::ranges::find(done.joints, joint, &JointMove::joint);
     if (moved != done.joints.end()) return moved->position;
@@ -193,20 +277,13 @@ class Deriver {
     }
     std::vector<std::vector<std::uint32_t>> objects = {{}};
     for (std::uint32_t o = 0; o < roles_.objects; ++o) objects.push_back({o});
-    std::vector<std::uint32_t> moved;  // all that have a role but the target
-    for (std::uint32_t o = 0; o < roles_.objects; ++o) {
-      const bool has_role = !plan::role_of_body(plan_.tables(), roles_, o).empty();
-      if (has_role && o != roles_.target && !roles_.is_distractor(o)) moved.push_back(o);
-    }
+    const std::vector<std::uint32_t> moved = moved_objects();
     if (moved.size() > 1) objects.push_back(moved);
     std::vector<Bundle> all;
     for (const auto& put : objects) {
-      for (const Place& place : put.empty() ? std::vector<Place>{{}} : places_) {
+      for (const PutPlace& place : put.empty() ? std::vector<PutPlace>{{}} : places_) {
         // Nothing goes onto itself, nor into what it has about it.
-        const std::uint32_t to = place.region == plan::kNone
-                                     ? place.to
-                                     : *owner_of(plan_.regions()[place.region]);
-        if (std::ranges::find(put, to) != put.end()) continue;
+        if (std::ranges::find(put, body_of(place)) != put.end()) continue;
         for (const auto& moves : joints) {
           // Every pair of joints beside every put would be too many to ask about.
           const bool is_source = put.size() == 1 && roles_.has_source() && put[0] == roles_.source;
@@ -291,9 +368,22 @@ class Deriver {
   }
 
   Result<bool> holds_with(const Arranged& bundle, bool handled) const {
+    return judge_world(plan_, task_, success_, world_of(bundle, handled));
+  }
+
+  // Whether success holds when one is so after the other, nothing having been done before the
+  // first.
+  Result<bool> holds_through(std::span<const Arranged> stages) const {
+    std::vector<MadeUpWorld> worlds = {still_};
+    for (const Arranged& stage : stages) worlds.push_back(world_of(stage, false));
+    return judge_worlds(plan_, task_, success_, std::move(worlds));
+  }
+
+  MadeUpWorld world_of(const Arranged& bundle, bool handled) const {
     MadeUpWorld world = still_;
     double along = 0;
-    for (const auto& [object, place] : bundle.objects) put(object, place, along++, &world);
+    for (const auto& [object, place] : bundle.objects)
+      put_at(plan_, record_, object, place, along++, &world);
     const std::size_t first =
         world.sample.joints.size() - joints_.size();  // the robot's stand before
     for (const JointMove& move : bundle.joints) {
@@ -303,51 +393,8 @@ class Deriver {
         world.sample.contacts.push_back(
             {finger, static_cast<std::uint16_t>(move.body), {0, kMadeUpContact, 0}});
     }
-    // Each pair once, ascending, as judges are told of contacts.
-    auto& contacts = world.sample.contacts;
-    const auto pair = [](const ContactSample& c) { return std::pair(c.a, c.b); };
-    std::ranges::stable_sort(contacts, {}, pair);
-    const auto is_same = [&](const ContactSample& a, const ContactSample& b) {
-      return pair(a) == pair(b);
-    };
-    contacts.erase(std::unique(contacts.begin(), contacts.end(), is_same), contacts.end());
-    return judge_world(plan_, task_, success_, std::move(world));
-  }
-
-  // Several things lie side by side, a millimetre apart: rules look at each alone.
-  void put(std::uint32_t object, const Place& place, double along, MadeUpWorld* world) const {
-    const Vec3 aside(0.001 * along, 0, 0);
-    const Vec3& half = world->starts[object].half;
-    std::uint32_t below = place.to;
-    Vec3 at = Vec3::Zero();
-    if (place.region != plan::kNone) {
-      const plan::RegionRecord& region = plan_.regions()[place.region];
-      below = *owner_of(region);
-      at = to_vec(plan::box_of(plan_.tables(), place.region).middle);
-      at += world->sample.bodies[below].origin;
-    } else {
-      const Vec3& half_below = world->starts[below].half;
-      const Vec3& to = world->sample.bodies[below].position;
-      if (place.relation == plan::SkillRelation::kBeside) {
-        const double apart = half.head<2>().norm() + half_below.head<2>().norm() + 0.015;
-        at = Vec3(to.x(), to.y() + apart, to.z() - half_below.z() + half.z());
-        below = world->surface;
-      } else {
-        // In a hollow thing it lies on the floor.
-        const bool is_in = place.relation == plan::SkillRelation::kIn;
-        at = to + Vec3(0, 0, half.z() + (is_in ? kInner - half_below.z() : half_below.z()));
-        if (place.to < roles_.objects) touch(place.to, world->surface, world);
-      }
-    }
-    world->put(object, at + aside);
-    touch(object, below, world);
-  }
-
-  // `above` presses `below`, whichever has the lower number.
-  static void touch(std::uint32_t above, std::uint32_t below, MadeUpWorld* world) {
-    const auto a = static_cast<std::uint16_t>(above), b = static_cast<std::uint16_t>(below);
-    if (a < b) return world->press_down(a, b);
-    world->sample.contacts.push_back({b, a, {0, 0, kMadeUpContact}});
+    put_contacts_in_order(&world);
+    return world;
   }
 
   Result<Bundle> without_needless(Bundle bundle) const {
@@ -419,13 +466,7 @@ class Deriver {
         });
       }
     }
-    for (const std::uint32_t object : bundle.objects) {
-      plan::SkillRecord put = record_of(plan::Skill::kPut, object);
-      put.relation = static_cast<std::uint32_t>(bundle.place.relation);
-      put.to = bundle.place.to;
-      put.region = bundle.place.region;
-      puts.push_back(put);
-    }
+    for (const std::uint32_t object : bundle.objects) puts.push_back(put_of(object, bundle.place));
     for (const JointMove& move : joints) {
       const bool is_first = move.skill == plan::Skill::kOpen;
       (is_first ? before : after).push_back(record_of(move));
@@ -443,7 +484,7 @@ class Deriver {
   const MadeUpWorld still_;
   const std::vector<const plan::FixtureJointRecord*> joints_;
   std::vector<JointMove> moves_;
-  std::vector<Place> places_;
+  std::vector<PutPlace> places_;
 };
 
 }  // namespace
@@ -459,6 +500,17 @@ Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task)
   const auto success = plan.find_metric(plan.tasks()[task], "success");
   if (said.empty() || !success) return std::string();
   return Deriver(plan, task, *success).flaw(said);
+}
+
+Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task) {
+  const auto said = plan::skills_of(plan.tables(), task);
+  const auto success = plan.find_metric(plan.tasks()[task], "success");
+  if (!success) return false;
+  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+  if (skills.empty()) {
+    PROBE_ASSIGN(skills, derive_solution(plan, task));
+  }
+  return Deriver(plan, task, *success).holds_either_way(skills);
 }
 
 }  // namespace probe::vm

@@ -13,7 +13,8 @@ namespace probe::vm {
 
 // The skills that make success together, none of which could be left out, in the order in which
 // they can be done: a part that something is put into is opened before, and closed after where it
-// shall be closed. Of objects put on, in or beside one place, of parts opened, closed and turned.
+// shall be closed. Of objects put on, in or beside one place, of parts opened, closed and turned; of
+// two objects that are put to two places or in one order.
 // Empty where no such bundle makes success, and where nothing has to be done.
 Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task);
 
@@ -22,5 +23,9 @@ Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, s
 // would make it so. Empty where nothing is amiss, where the text says none, and where it cannot be
 // told: of what is pressed, pushed or held at the end.
 Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task);
+
+// Whether the task is solved by putting two things somewhere, as its text says or as is derived, and
+// success is true whichever of them is put first.
+Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task);
 
 }  // namespace probe::vm

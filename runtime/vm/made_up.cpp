@@ -158,12 +158,22 @@ std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t t
 
 Result<bool> judge_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
                          MadeUpWorld world) {
+  std::vector<MadeUpWorld> worlds;
+  worlds.push_back(std::move(world));
+  return judge_worlds(plan, task, metric, std::move(worlds));
+}
+
+Result<bool> judge_worlds(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
+                          std::vector<MadeUpWorld> worlds) {
   Judge judge(plan, task);
-  PROBE_TRY(judge.begin(world.starts));
-  for (int step = 1; step <= kSteps; ++step) {
-    world.sample.step = step;
-    world.sample.time = step / 5.0;
-    PROBE_TRY(judge.step(world.sample));
+  PROBE_TRY(judge.begin(worlds.front().starts));
+  int step = 0;
+  for (MadeUpWorld& world : worlds) {
+    for (int k = 0; k < kSteps; ++k) {
+      world.sample.step = ++step;
+      world.sample.time = step / 5.0;
+      PROBE_TRY(judge.step(world.sample));
+    }
   }
   return judge.truth(metric);
 }

@@ -57,4 +57,8 @@ std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t t
 Result<bool> judge_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
                          MadeUpWorld world);
 
+// The same of worlds one after the other, each for so many steps; they begin as the first does.
+Result<bool> judge_worlds(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
+                          std::vector<MadeUpWorld> worlds);
+
 }  // namespace probe::vm

@@ -321,6 +321,60 @@ TEST_CASE("a thing that is to be put on another and begins there is found") {
   }
 }
 
+TEST_CASE("what is to lie between two things may lie beside one of them") {
+  const Audited own = audit_text(
+      "use \"std/space.probe\"\nrole helper\n"
+      "layout three { cells c = grid 1 x 3 at (-16cm, 0cm) spread (0cm, 13cm)\n"
+      "  place source, target, helper in distinct c; drop 30cm settle 0.5s }\n"
+      "metrics middle { success = at end between(source, target, helper) }\n"
+      "metrics near { success = at end (distance_xy(source, target) < 20cm and "
+      "distance_xy(helper, target) < 9m) }\n"
+      "task amid like carrot_on_plate { layout three; helper spoon; metrics middle\n"
+      "  say \"put {the source} between {the target} and {the helper}\" }\n"
+      "task loose like amid { metrics near; say \"put {the source} on {the target}, not on {avoid "
+      "the helper}\" }\n"
+      "suite own { tasks { amid, loose }; seeds 1 }\n");
+  CHECK(own.find(Kind::kBeside, "amid") == nullptr);
+  CHECK(own.find(Kind::kBeside, "loose") != nullptr);
+}
+
+TEST_CASE("what is wrong before the target was moved is not wrong because of it") {
+  const auto with = [](const std::string& wrong) {
+    return audit_text("metrics kept like put_clean { wrong = once " + wrong +
+                      " }\ntask t like carrot_on_plate { metrics kept }\n"
+                      "suite own { tasks { t }; seeds 1 }\n");
+  };
+  CHECK(with("moved_xy(target) > 5cm").find(Kind::kWrongCountsTarget, "t") != nullptr);
+  CHECK(with("height(source) < height(target) + 1m").find(Kind::kWrongCountsTarget, "t") ==
+        nullptr);
+}
+
+TEST_CASE("an order that the words say and success does not ask for is found") {
+  const auto with = [](const std::string& success, const std::string& words) {
+    return audit_text(
+        "use \"std/place.probe\"\nrole helper\n"
+        "layout three { cells c = grid 1 x 3 at (-22cm, 0cm) spread (0cm, 13cm)\n"
+        "  place source, target, helper in distinct c; place towel at (-4cm, 0cm)\n"
+        "  drop 30cm settle 0.5s }\n"
+        "predicate both_put(a: object, p: object, b: object, q: object) = all {\n"
+        "  on_top_of(a, p)\n  on_top_of(b, q)\n}\n"
+        "metrics two { success = " +
+        success +
+        " }\ntask t like carrot_on_plate { layout three; helper spoon; metrics two\n  say \"" +
+        words + "\" }\nsuite own { tasks { t }; seeds 1 }\n");
+  };
+  const std::string first = "put {the source} on {the target}, then {the helper} on the towel";
+  const Audited either = with("at end both_put(source, target, helper, towel)", first);
+  const audit::Finding* found = either.find(Kind::kSwappedOrder, "t");
+  REQUIRE(found != nullptr);
+  CHECK(found->message == "`t` says \"then\", and `success` is true whichever is put first");
+  CHECK(with("at end put_in_order(source, target, helper, towel)", first)
+            .find(Kind::kSwappedOrder, "t") == nullptr);
+  CHECK(with("at end (on_top_of(source, target) and on_top_of(helper, towel))",
+             "put {the source} on {the target} and {the helper} on the towel")
+            .find(Kind::kSwappedOrder, "t") == nullptr);
+}
+
 TEST_CASE("a warning about a task of another suite is no finding of this one") {
   const std::string text =
       "@allow(absent, \"a test\")\nvariant odd of carrot_on_plate {\n"

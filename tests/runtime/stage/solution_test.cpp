@@ -167,6 +167,34 @@ suite all { tasks { never }; seeds 0 }
   CHECK(derived->empty());
 }
 
+TEST_CASE(
+    "two things that go to two places in one order are put so, where the text says no skills") {
+  const plan::Plan plan = kitchen_of(R"(
+use "std/place.probe"
+role helper
+layout three { cells c = grid 1 x 3 at (-20cm, 0cm) spread (0cm, 13cm)
+  place source, target, helper in distinct c; place towel at (-4cm, 0cm)
+  orient by rest; drop 30cm settle 0.5s }
+metrics in_order { success = at end put_in_order(helper, towel, source, target) }
+metrics anyhow { success = at end (on_top_of(source, target) and on_top_of(helper, towel)) }
+task ordered like kept { layout three; helper green_cube; metrics in_order
+  say "put {the helper} on the towel, then {the source} on {the target}" }
+task free like ordered { metrics anyhow; say "put {the source} on {the target} and {the helper} on the towel" }
+suite all { tasks { ordered, free }; seeds 0 }
+)");
+  const auto derived = [&](const char* task) {
+    const auto skills = vm::derive_solution(plan, plan.find_task(task).value());
+    REQUIRE(skills.ok());
+    std::string text;
+    for (const plan::SkillRecord& skill : *skills)
+      text += (text.empty() ? "" : "; ") + plan::skill_text(plan.tables(), skill);
+    return text;
+  };
+  CHECK(derived("ordered") == "put green_cube on towel; put carrot on plate");
+  CHECK(derived("free") == "put carrot on plate; put green_cube on towel");
+  CHECK(solves(plan, "ordered", 0));
+}
+
 TEST_CASE("a turned region is put into where it is, not in the larger box around it") {
   const plan::Plan plan = kitchen_of(R"(
 scene slotted like wide {

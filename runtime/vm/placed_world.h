@@ -1,0 +1,27 @@
+// Things put somewhere in a made-up world: onto a body, into or beside it, into a region.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "runtime/plan/plan.h"
+#include "runtime/vm/made_up.h"
+
+namespace probe::vm {
+
+// Where things are put: onto a body, or into a region.
+struct PutPlace {
+  std::uint32_t to = plan::kNone, region = plan::kNone;
+  plan::SkillRelation relation = plan::SkillRelation::kOn;
+  bool operator==(const PutPlace&) const = default;
+};
+
+// Moves an object of the task there and has it pressed by nothing but what carries it. What is put
+// there before lies `along` mm aside: rules look at each alone.
+void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t object,
+            const PutPlace& place, double along, MadeUpWorld* world);
+
+// Each pair once, ascending, as judges are told of contacts.
+void put_contacts_in_order(MadeUpWorld* world);
+
+}  // namespace probe::vm
