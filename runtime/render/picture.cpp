@@ -54,6 +54,15 @@ void Picture::clear(int new_width, int new_height) {
   segmentation.assign(pixels, 0);
 }
 
+void Picture::resize(int new_width, int new_height) {
+  width = new_width;
+  height = new_height;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  rgb.resize(3 * pixels);
+  depth.resize(pixels);
+  segmentation.resize(pixels);
+}
+
 void show_hits(const TileHits& hits, const TopScene& scene, const CameraRays& rays, int tile,
                const ShadeOutput* colors, Picture& picture) {
   const float* cosine = rays.cosine.data() + static_cast<std::size_t>(tile) * kTileSamples;

@@ -17,6 +17,8 @@ struct Picture {
 
   // Another size, all of it black, without depth and id.
   void clear(int new_width, int new_height);
+  // Another size; what it shows is nobody's.
+  void resize(int new_width, int new_height);
   std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);

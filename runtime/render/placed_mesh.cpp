@@ -1,6 +1,7 @@
 #include "runtime/render/placed_mesh.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,9 @@ inline std::int32_t subpixel(float pixels) {
   return static_cast<std::int32_t>(std::floor(kept + 0.5f));
 }
 
+// How far from a ball's middle what it holds may lie, with room for rounding.
+inline float room_of(const Ball& ball) { return ball.radius * 1.001f + 1e-5f; }
+
 struct CornerView {
   std::array<float, 9> turn;
   std::array<float, 3> shift;
@@ -36,6 +40,7 @@ struct SeenPlaces {
   std::array<std::int32_t, kMost> x, y;
   std::array<float, kMost> nearness;
   std::int32_t left = 0, right = 0, top = 0, bottom = 0;
+  float nearest = 0;
   bool is_cut = false;  // some lie before the nearest depth
 };
 
@@ -48,6 +53,7 @@ PROBE_CLONES void view_places(const float* __restrict x, const float* __restrict
   float* __restrict nearness = out.nearness.data();
   std::int32_t x0 = std::numeric_limits<std::int32_t>::max(), x1 = -x0, y0 = x0, y1 = -x0;
   std::int32_t behind = 0;
+  std::int32_t nearest = 0;  // bits of a positive float, which are in its order
   for (std::size_t i = 0; i < count; ++i) {
     const float right = p.turn[0] * x[i] + p.turn[1] * y[i] + p.turn[2] * z[i] + p.shift[0];
     const float low = p.turn[3] * x[i] + p.turn[4] * y[i] + p.turn[5] * z[i] + p.shift[1];
@@ -57,6 +63,7 @@ PROBE_CLONES void view_places(const float* __restrict x, const float* __restrict
     across[i] = subpixel(p.cx + p.fx * right * near);
     down[i] = subpixel(p.cy + p.fy * low * near);
     nearness[i] = deep < PlacedMeshes::kNearestDepth ? kBehind : near;
+    nearest = greatest(nearest, std::bit_cast<std::int32_t>(near));
     x0 = least(x0, across[i]);
     x1 = greatest(x1, across[i]);
     y0 = least(y0, down[i]);
@@ -67,8 +74,25 @@ PROBE_CLONES void view_places(const float* __restrict x, const float* __restrict
   out.right = x1;
   out.top = y0;
   out.bottom = y1;
+  out.nearest = std::bit_cast<float>(nearest);
   out.is_cut = behind != 0;
 }
+
+// Those of a cluster that no plane cuts.
+struct UncutTriangles {
+  std::array<std::array<std::uint16_t, SmallTriangles::kMost>, 3> corner;
+  std::array<std::uint32_t, SmallTriangles::kMost> triangle;
+  std::size_t count = 0;
+
+  void add(const SmallTriangles& from, std::size_t i, std::uint32_t number) {
+    for (std::size_t k = 0; k < 3; ++k) corner[k][count] = from.corner[k][i];
+    triangle[count++] = number;
+  }
+  void put(SmallTriangles& into) const {
+    for (std::size_t k = 0; k < 3; ++k) into.corner[k] = corner[k].data();
+    into.count = count;
+  }
+};
 
 }  // namespace
 
@@ -94,9 +118,12 @@ Status PlacedMeshes::add(const std::vector<Visual>& visuals,
     instance.name = visual.name;
     instance.first_part = parts_.size();
     for (const VertexMesh::Part& part : instance.mesh->parts) {
-      parts_.push_back({instances_.size(), &part, corners_, end_id_});
-      corners_ += part.x.size();
+      const std::uint32_t first = end_id_;
       end_id_ += static_cast<std::uint32_t>(part.indices.size() / 3);
+      while (part_at_.size() * kIdsTogether < end_id_)
+        part_at_.push_back(static_cast<std::uint32_t>(parts_.size()));
+      parts_.push_back({instances_.size(), &part, corners_, first, end_id_});
+      corners_ += part.corners.size();
     }
     instances_.push_back(std::move(instance));
   }
@@ -138,14 +165,16 @@ std::optional<PlacedMeshes::Mirror> PlacedMeshes::mirror() const {
     Mirror mirror;
     mirror.instance = placed.instance;
     mirror.share = part.mirror;
-    const Vec3 normal(part.normals[0], part.normals[1], part.normals[2]);
-    mirror.normal = instance.place.rotation * normal;
-    mirror.height = mirror.normal.dot(instance.place.apply(Vec3(part.x[0], part.y[0], part.z[0])));
+    mirror.first_id = placed.first_id;
+    mirror.end_id = placed.end_id;
+    const VertexCorner& first = part.corners[0];
+    mirror.normal = instance.place.rotation * first.normal.cast<double>();
+    mirror.height = mirror.normal.dot(instance.place.apply(first.place.cast<double>()));
     if (mirror.normal.dot(eye_) <= mirror.height || is_outside(instance, part.around)) continue;
     mirror.left = width_;
     mirror.top = height_;
-    for (std::size_t i = 0; i < part.x.size(); ++i) {
-      const Float3 seen = instance.to_camera({part.x[i], part.y[i], part.z[i]});
+    for (const VertexCorner& corner : part.corners) {
+      const Float3 seen = instance.to_camera(corner.place);
       if (seen.z() < kNearestDepth) {
         mirror.left = mirror.top = 0;
         mirror.right = width_ - 1;
@@ -167,6 +196,25 @@ std::optional<PlacedMeshes::Mirror> PlacedMeshes::mirror() const {
     return mirror;
   }
   return std::nullopt;
+}
+
+bool PlacedMeshes::Mirror::narrow(const SampleBuffer& seen) {
+  Mirror found = *this;
+  found.left = right + 1;
+  found.right = left - 1;
+  found.top = bottom + 1;
+  found.bottom = top - 1;
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      if (!is_in(seen.ids(x, y))) continue;
+      found.left = std::min(found.left, x);
+      found.right = std::max(found.right, x);
+      found.top = std::min(found.top, y);
+      found.bottom = std::max(found.bottom, y);
+    }
+  }
+  *this = found;
+  return left <= right;
 }
 
 void PlacedMeshes::look_into(const Camera& camera, const Mirror& mirror) {
@@ -214,7 +262,7 @@ Float3 PlacedMeshes::Instance::to_camera(const Float3& p) const {
 // The ball lies beside the picture or behind the eye, with room for rounding.
 bool PlacedMeshes::is_outside(const Instance& instance, const Ball& ball) const {
   const Float3 c = instance.to_camera(ball.middle);
-  const float reach = ball.radius * 1.001f + 1e-5f;
+  const float reach = room_of(ball);
   if (c.z() + reach < kNearestDepth) return true;
   if (into_ && instance.up.dot(ball.middle) + reach < instance.level) return true;
   // Past a side of the picture: `room` pixels from the middle, with a pixel to spare.
@@ -223,6 +271,11 @@ bool PlacedMeshes::is_outside(const Instance& instance, const Ball& ball) const 
   };
   return past(c.x(), fx_, right_ - cx_) || past(-c.x(), fx_, cx_ - left_) ||
          past(c.y(), fy_, bottom_ - cy_) || past(-c.y(), fy_, cy_ - top_);
+}
+
+// Some of the ball may lie behind the mirror that is looked into.
+bool PlacedMeshes::meets_mirror(const Instance& instance, const Ball& ball) const {
+  return instance.up.dot(ball.middle) - room_of(ball) < instance.level;
 }
 
 DrawnCorner PlacedMeshes::corner_at(const Float3& seen) const {
@@ -236,8 +289,7 @@ void PlacedMeshes::draw_cut(const Instance& instance, const VertexMesh::Part& pa
   std::array<Float3, 5> left;
   std::size_t count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t i = part.indices[first + k];
-    left[k] = {part.x[i], part.y[i], part.z[i]};
+    left[k] = part.corners[part.indices[first + k]].place;
   }
   // Keeps what `height` says 0 or more of.
   const auto cut = [&](const auto& height) {
@@ -269,14 +321,29 @@ void PlacedMeshes::draw_cut(const Instance& instance, const VertexMesh::Part& pa
 
 void PlacedMeshes::draw(std::size_t index, SampleBuffer& out, RowSpans* spans) {
   const Instance& instance = instances_[index];
-  for (std::size_t p = 0; p < instance.mesh->parts.size(); ++p) {
-    const PlacedPart& placed = parts_[instance.first_part + p];
-    if (placed.part->indices.empty() || is_outside(instance, placed.part->around)) continue;
-    const auto& clusters = placed.part->clusters.clusters;
-    for (const MeshClusters::Cluster& cluster : clusters) {
-      if (clusters.size() > 1 && is_outside(instance, cluster.around)) continue;
-      draw_cluster(instance, placed, cluster, out, spans);
-    }
+  for (std::size_t p = 0; p < instance.mesh->parts.size(); ++p)
+    draw_part(parts_[instance.first_part + p], out, spans);
+}
+
+void PlacedMeshes::draw_all(SampleBuffer& out) {
+  order_.clear();
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const Ball& ball = parts_[p].part->around;
+    const Instance& instance = instances_[parts_[p].instance];
+    if (into_ && parts_[p].instance == into_->instance) continue;
+    order_.push_back({instance.to_camera(ball.middle).z() + ball.radius, p});
+  }
+  std::ranges::sort(order_);
+  for (const auto& [depth, part] : order_) draw_part(parts_[part], out, nullptr);
+}
+
+void PlacedMeshes::draw_part(const PlacedPart& placed, SampleBuffer& out, RowSpans* spans) const {
+  const Instance& instance = instances_[placed.instance];
+  if (placed.part->indices.empty() || is_outside(instance, placed.part->around)) return;
+  const auto& clusters = placed.part->clusters.clusters;
+  for (const MeshClusters::Cluster& cluster : clusters) {
+    if (clusters.size() > 1 && is_outside(instance, cluster.around)) continue;
+    draw_cluster(instance, placed, cluster, out, spans);
   }
 }
 
@@ -296,20 +363,44 @@ void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& plac
     bottom = std::min(bottom, seen.bottom / kSubpixels + 1);
   }
   if (left > right || top > bottom) return;
+  // Over what is kept of another picture little is hidden.
+  const bool is_whole = spans == nullptr;
+  if (is_whole && !seen.is_cut && out.hides(left, right, top, bottom, seen.nearest)) return;
   if (spans != nullptr) spans->add(top, bottom, left, right);
   const std::uint32_t* triangle = of.triangle.data() + cluster.first_triangle;
-  if (into_ || seen.is_cut) {
-    for (std::size_t i = 0; i < cluster.triangles; ++i)
-      draw_cut(instance, *placed.part, std::size_t{3} * triangle[i], out,
-               placed.first_id + triangle[i]);
-    return;
-  }
   SmallTriangles all{.x = seen.x.data(),
                      .y = seen.y.data(),
                      .nearness = seen.nearness.data(),
                      .corner = {},
                      .count = cluster.triangles};
-  for (std::size_t k = 0; k < 3; ++k) all.corner[k] = of.place[k].data() + cluster.first_triangle;
+  // A mirror turns what it shows: two corners change places.
+  for (std::size_t k = 0; k < 3; ++k)
+    all.corner[into_ && k > 0 ? 3 - k : k] = of.place[k].data() + cluster.first_triangle;
+  UncutTriangles uncut;
+  if (seen.is_cut || (into_ && meets_mirror(instance, cluster.around))) {
+    std::array<float, MeshClusters::kMostPlaces> above;  // the plane of the mirror
+    for (std::size_t i = 0; into_ && i < cluster.places; ++i) {
+      const std::size_t at = cluster.first_place + i;
+      above[i] = instance.up.dot(Float3(of.x[at], of.y[at], of.z[at])) - instance.level;
+    }
+    for (std::size_t i = 0; i < cluster.triangles; ++i) {
+      int behind = 0, under = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint16_t at = all.corner[k][i];
+        behind += seen.nearness[at] == kBehind ? 1 : 0;
+        under += into_ && above[at] < 0 ? 1 : 0;
+      }
+      if (behind == 3 || under == 3) continue;
+      if (behind == 0 && under == 0) {
+        uncut.add(all, i, triangle[i]);
+      } else {
+        draw_cut(instance, *placed.part, std::size_t{3} * triangle[i], out,
+                 placed.first_id + triangle[i]);
+      }
+    }
+    uncut.put(all);
+    triangle = uncut.triangle.data();
+  }
   SeenTriangles shown;
   find_seen(all, out, shown);
   const auto corner = [&](std::size_t k, std::size_t i) {
@@ -320,6 +411,7 @@ void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& plac
     const std::size_t i = shown.to_draw[n];
     out.draw(corner(0, i), corner(1, i), corner(2, i), placed.first_id + triangle[i]);
   }
+  if (is_whole && shown.held > 0) out.note(left, right, top, bottom);
   for (std::size_t n = 0; n < shown.held; ++n) {
     const SeenTriangles::Sample& sample = shown.samples[n];
     out.put(sample.at, sample.nearness, placed.first_id + triangle[sample.triangle]);

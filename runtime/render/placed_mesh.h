@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/render/sample_buffer.h"
@@ -44,7 +45,15 @@ class PlacedMeshes {
     Vec3 normal = Vec3::UnitZ();
     double height = 0;                             // normal . p of what lies in it
     float share = 0;                               // of colours that it gives back
+    std::uint32_t first_id = 0, end_id = 0;        // of its triangles
     int left = 0, right = 0, top = 0, bottom = 0;  // the last ones too
+    bool holds(std::uint32_t id) const { return first_id <= id && id < end_id; }
+    // Of a pixel's four samples.
+    bool is_in(const std::uint32_t* ids) const {
+      return holds(ids[0]) || holds(ids[1]) || holds(ids[2]) || holds(ids[3]);
+    }
+    // To the pixels of it that show it, where the scene is drawn; whether there are any.
+    bool narrow(const SampleBuffer& seen);
   };
   // The first that the camera sees the front of, none else: as MuJoCo has it.
   std::optional<Mirror> mirror() const;
@@ -56,6 +65,9 @@ class PlacedMeshes {
   // `spans` gets where it may be, if it is not null. Its triangles have numbers from 1 on, in the
   // order of visuals, parts and indices.
   void draw(std::size_t instance, SampleBuffer& out, RowSpans* spans);
+  // All of them where they are, what is near first: much of the rest is hidden then and left out.
+  // But for the mirror that is looked into.
+  void draw_all(SampleBuffer& out);
 
   struct Instance {
     std::shared_ptr<const VertexMesh> mesh;
@@ -76,12 +88,16 @@ class PlacedMeshes {
     std::size_t instance = 0;
     const VertexMesh::Part* part = nullptr;
     std::size_t first_corner = 0;  // of all corners
-    std::uint32_t first_id = 1;
+    std::uint32_t first_id = 1, end_id = 1;
   };
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<PlacedPart>& parts() const { return parts_; }
-  std::size_t corners() const { return corners_; }
-  std::uint32_t end_id() const { return end_id_; }  // one more than the last
+  // That has the triangle.
+  std::size_t part_of(std::uint32_t id) const {
+    std::size_t part = part_at_[id / kIdsTogether];
+    while (id >= parts_[part].end_id) ++part;
+    return part;
+  }
 
   // Of a pixel's middle.
   float across(int x) const { return across_[static_cast<std::size_t>(x)]; }
@@ -92,7 +108,9 @@ class PlacedMeshes {
 
  private:
   bool is_outside(const Instance& instance, const Ball& ball) const;
+  bool meets_mirror(const Instance& instance, const Ball& ball) const;
   DrawnCorner corner_at(const Float3& seen) const;
+  void draw_part(const PlacedPart& placed, SampleBuffer& out, RowSpans* spans) const;
   void draw_cluster(const Instance& instance, const PlacedPart& placed,
                     const MeshClusters::Cluster& cluster, SampleBuffer& out, RowSpans* spans) const;
   void draw_cut(const Instance& instance, const VertexMesh::Part& part, std::size_t first,
@@ -100,9 +118,11 @@ class PlacedMeshes {
 
   std::vector<Instance> instances_;
   std::vector<PlacedPart> parts_;
-  Vec3 eye_ = Vec3::Zero();         // of light; of a mirror's picture behind it
-  Mat3 to_eye_ = Mat3::Identity();  // world to right, down, forward
-  Vec3 shift_ = Vec3::Zero();       // after that
+  static constexpr std::uint32_t kIdsTogether = 64;
+  std::vector<std::uint32_t> part_at_;  // that has the first of so many numbers, or ends before it
+  Vec3 eye_ = Vec3::Zero();             // of light; of a mirror's picture behind it
+  Mat3 to_eye_ = Mat3::Identity();      // world to right, down, forward
+  Vec3 shift_ = Vec3::Zero();           // after that
   Vec3 forward_ = Vec3::UnitX();
   std::optional<Mirror> into_;
   float left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // pixels that count
@@ -110,6 +130,7 @@ class PlacedMeshes {
   float fx_ = 1, fy_ = 1, cx_ = 0, cy_ = 0;
   std::vector<float> across_, down_;  // by column and by row
   float step_across_ = 1, step_down_ = 1;
+  std::vector<std::pair<float, std::size_t>> order_;  // of parts, by depth
   std::size_t corners_ = 0;
   std::uint32_t end_id_ = 1;
 };

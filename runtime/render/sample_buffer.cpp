@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "runtime/render/clones.h"
 
@@ -47,6 +48,15 @@ inline void put(const Ints& inside, const Floats& nearness, std::int32_t id, flo
   std::memcpy(ids, &is, sizeof is);
 }
 
+// How near the farthest samples of tiles of 2^shift pixels a side are.
+struct Farthest {
+  const float* tile;
+  int across, shift;
+};
+
+// What is behind by less than this may come to lie before, by rounding.
+constexpr double kBehind = 1.0001;
+
 // A triangle of at most 64 pixels a side: everything in 32 bits.
 PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in,
                              const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
@@ -60,6 +70,8 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
     y[i] = c[i].y - in.top * kSubpixels;
   }
   const auto inverse = static_cast<float>(1 / area);
+  constexpr int kWide = 6;
+  const bool is_wide = in.right - in.left > kWide;
   // The edge across from corner i at a sample, twice the area of its part of the triangle.
   Ints row[3];
   int along_x[3], along_y[3];
@@ -73,8 +85,6 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
     share[i] = Floats{} + c[i].nearness * inverse;
   }
   // Pixels of a wide row before which an edge is not met, or from which on it is not any more.
-  constexpr int kWide = 6;
-  const bool is_wide = in.right - in.left > kWide;
   float inverse_step[3] = {}, reach[3] = {};
   if (is_wide) {
     for (int i = 0; i < 3; ++i) {
@@ -126,7 +136,7 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
 // Any triangle: edges in doubles, which hold these whole numbers exactly.
 PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in,
                              const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
-                             std::uint32_t* ids) {
+                             std::uint32_t* ids, const Farthest& behind) {
   Ints across, down;
   std::memcpy(&across, grid.across.data(), sizeof across);
   std::memcpy(&down, grid.down.data(), sizeof down);
@@ -148,6 +158,7 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
   Doubles offset[3];
   for (int i = 0; i < 3; ++i) offset[i] = along_x[i] * fx + along_y[i] * fy;
   const Floats lean = __builtin_convertvector(slope_x * fx + slope_y * fy, Floats);
+  const double greatest_lean = std::max({lean[0], lean[1], lean[2], lean[3]});
   for (int py = in.top; py <= in.bottom; ++py) {
     // Where along the row all edges can be met by some sample, with a pixel of room.
     const double y = static_cast<double>(py) * kSubpixels;
@@ -173,14 +184,33 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
                  step2 = along_x[2] * kSubpixels;
     double here = level + slope_y * y + slope_x * x0;
     const double step = slope_x * kSubpixels;
-    for (int px = left; px <= right; ++px, at += 4) {
-      const Longs wide = (e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0);
-      const Ints inside = __builtin_convertvector(wide, Ints);
-      if (any(inside)) put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
-      e0 += step0;
-      e1 += step1;
-      e2 += step2;
-      here += step;
+    const float* const farthest = behind.tile + (py >> behind.shift) * behind.across;
+    for (int px = left; px <= right;) {
+      const int next = std::min(right + 1, ((px >> behind.shift) + 1) << behind.shift);
+      const int count = next - px;
+      // A row of a tile: the nearest of it lies at one of its ends, or beyond.
+      const double ends = std::max(here, here + step * count) + greatest_lean;
+      if (ends * kBehind < static_cast<double>(farthest[px >> behind.shift])) {
+        // Step by step: what is rounded on the way stays the same.
+        for (int i = 0; i < count; ++i) {
+          e0 += step0;
+          e1 += step1;
+          e2 += step2;
+          here += step;
+        }
+        at += 4 * static_cast<std::size_t>(count);
+        px = next;
+        continue;
+      }
+      for (; px < next; ++px, at += 4) {
+        const Longs wide = (e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0);
+        const Ints inside = __builtin_convertvector(wide, Ints);
+        if (any(inside)) put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
+        e0 += step0;
+        e1 += step1;
+        e2 += step2;
+        here += step;
+      }
     }
   }
 }
@@ -195,6 +225,11 @@ void SampleBuffer::resize(int width, int height, bool smooth) {
                  : SampleGrid{{128, 128, 128, 128}, {128, 128, 128, 128}, 128, 128};
   const std::size_t samples =
       std::size_t{4} * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height);
+  const auto tiles = [](int pixels) { return (pixels + kTile - 1) >> kTileShift; };
+  tiles_across_ = tiles(width);
+  farthest_.resize(static_cast<std::size_t>(tiles_across_) *
+                   static_cast<std::size_t>(tiles(height)));
+  changed_.resize(farthest_.size());
   nearness_.resize(samples);
   id_.resize(samples);
   clear();
@@ -203,6 +238,19 @@ void SampleBuffer::resize(int width, int height, bool smooth) {
 void SampleBuffer::clear() {
   std::fill(nearness_.begin(), nearness_.end(), 0.0f);
   std::fill(id_.begin(), id_.end(), 0u);
+  std::fill(farthest_.begin(), farthest_.end(), 0.0f);
+  std::fill(changed_.begin(), changed_.end(), std::uint8_t{0});
+  is_looked_at_ = false;
+}
+
+void SampleBuffer::clear(int left, int right, int top, int bottom) {
+  forget(left, right, top, bottom);
+  for (int y = top; y <= bottom; ++y) {
+    const auto first = static_cast<std::ptrdiff_t>(4 * at(left, y)),
+               end = static_cast<std::ptrdiff_t>(4 * (at(right, y) + 1));
+    std::fill(nearness_.begin() + first, nearness_.begin() + end, 0.0f);
+    std::fill(id_.begin() + first, id_.begin() + end, 0u);
+  }
 }
 
 void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c,
@@ -221,13 +269,85 @@ void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnC
   if (x0 > x1 || y0 > y1 || x1 < 0 || y1 < 0 || x0 >= width_ || y0 >= height_) return;
   const Pixels in{std::max(x0, 0), std::min(x1, width_ - 1), std::max(y0, 0),
                   std::min(y1, height_ - 1)};
+  const int left_tile = in.left >> kTileShift, right_tile = in.right >> kTileShift;
+  const int top_tile = in.top >> kTileShift, bottom_tile = in.bottom >> kTileShift;
+  constexpr int kFew = 2;
+  if (is_looked_at_ && right_tile - left_tile <= kFew && bottom_tile - top_tile <= kFew) {
+    const float nearest =
+        std::max({a.nearness, b.nearness, c.nearness}) * static_cast<float>(kBehind);
+    bool is_hidden = true;
+    for (int row = top_tile; row <= bottom_tile; ++row) {
+      for (int column = left_tile; column <= right_tile; ++column)
+        is_hidden = is_hidden && nearest < farthest_[tile_at(column, row)];
+    }
+    if (is_hidden) return;
+  }
+  if (is_looked_at_) note(in.left, in.right, in.top, in.bottom);
   constexpr int kSmall = 64;
-  const auto draw = x1 - x0 < kSmall && y1 - y0 < kSmall ? draw_small : draw_large;
-  draw(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
-       id_.data());
+  if (x1 - x0 < kSmall && y1 - y0 < kSmall) {
+    draw_small(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
+               id_.data());
+  } else {
+    draw_large(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
+               id_.data(), {farthest_.data(), tiles_across_, kTileShift});
+  }
+}
+
+void SampleBuffer::note(int left, int right, int top, int bottom) {
+  for (int row = top >> kTileShift; row <= bottom >> kTileShift; ++row) {
+    for (int column = left >> kTileShift; column <= right >> kTileShift; ++column)
+      changed_[tile_at(column, row)] = 1;
+  }
+}
+
+// How near the farthest sample of a tile is.
+float SampleBuffer::look_at(int column, int row) {
+  float& farthest = farthest_[tile_at(column, row)];
+  std::uint8_t& changed = changed_[tile_at(column, row)];
+  if (changed == 0) return farthest;
+  changed = 0;
+  const int left = column << kTileShift, right = std::min(left + kTile, width_);
+  Floats least = Floats{} + std::numeric_limits<float>::infinity();
+  for (int y = row << kTileShift; y < std::min((row + 1) << kTileShift, height_); ++y) {
+    const float* const from = nearness(left, y);
+    for (int i = 0; i < 4 * (right - left); i += 4) {
+      Floats here;
+      std::memcpy(&here, from + i, sizeof here);
+      least = here < least ? here : least;
+    }
+  }
+  farthest = std::min({least[0], least[1], least[2], least[3]});
+  return farthest;
+}
+
+bool SampleBuffer::hides(int left, int right, int top, int bottom, float nearness) {
+  constexpr int kMostTiles = 64;
+  const int first = left >> kTileShift, last = right >> kTileShift;
+  if ((last - first + 1) * ((bottom >> kTileShift) - (top >> kTileShift) + 1) > kMostTiles)
+    return false;
+  const float nearest = nearness * static_cast<float>(kBehind);
+  is_looked_at_ = true;
+  bool hides = true;
+  for (int row = top >> kTileShift; row <= bottom >> kTileShift; ++row) {
+    for (int column = first; column <= last; ++column)
+      hides = nearest < look_at(column, row) && hides;
+  }
+  return hides;
+}
+
+// Samples of these pixels are farther than they were, or may be.
+void SampleBuffer::forget(int left, int right, int top, int bottom) {
+  if (!is_looked_at_) return;
+  for (int row = top >> kTileShift; row <= bottom >> kTileShift; ++row) {
+    for (int column = left >> kTileShift; column <= right >> kTileShift; ++column) {
+      farthest_[tile_at(column, row)] = 0;
+      changed_[tile_at(column, row)] = 1;
+    }
+  }
 }
 
 void SampleBuffer::restore(const SampleBuffer& from, int row, int left, int right) {
+  forget(left, right - 1, row, row);
   const std::size_t first = 4 * at(left, row),
                     count = std::size_t{4} * static_cast<std::size_t>(right - left);
   std::copy_n(from.nearness_.begin() + static_cast<std::ptrdiff_t>(first), count,

@@ -30,11 +30,14 @@ class SampleBuffer {
   // `smooth`: four places a pixel.
   void resize(int width, int height, bool smooth);
   void clear();
+  // Columns and rows to the last ones too.
+  void clear(int left, int right, int top, int bottom);
   // The samples that are in the triangle and nearer than what is there become `id`, from 1 on and
   // below 2^31. Corners lie within 2^27 subpixels. A face whose corners turn against the clock as
   // seen is a front; the back of one shows nothing.
   void draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c, std::uint32_t id);
-  // One sample, numbered (y width + x) 4 + which, that a triangle holds.
+  // One sample, numbered (y width + x) 4 + which, that a triangle holds. `note` says where such
+  // are.
   void put(std::size_t sample, float nearness, std::uint32_t id) {
     float& near = nearness_[sample];
     std::uint32_t& shown = id_[sample];
@@ -42,6 +45,10 @@ class SampleBuffer {
     near = passes ? nearness : near;
     shown = passes ? id : shown;
   }
+  void note(int left, int right, int top, int bottom);
+  // Whether samples that near would be behind everything there is in these columns and rows, to the
+  // last ones; an area of many pixels is taken for seen. What is drawn makes no difference then.
+  bool hides(int left, int right, int top, int bottom, float nearness);
   // What another buffer of the same size has in columns [left, right) of a row.
   void restore(const SampleBuffer& from, int row, int left, int right);
 
@@ -56,7 +63,19 @@ class SampleBuffer {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(x);
   }
-  int width_ = 0, height_ = 0;
+  // Pixels in squares of kTile a side, and how near the farthest sample of each is: as it was when
+  // it was looked at last, which is no nearer than it is now.
+  static constexpr int kTileShift = 3, kTile = 1 << kTileShift;
+  std::size_t tile_at(int column, int row) const {
+    return static_cast<std::size_t>(row * tiles_across_ + column);
+  }
+  float look_at(int column, int row);
+  void forget(int left, int right, int top, int bottom);
+
+  int width_ = 0, height_ = 0, tiles_across_ = 0;
+  std::vector<float> farthest_;        // by tile
+  std::vector<std::uint8_t> changed_;  // since it was looked at
+  bool is_looked_at_ = false;          // any
   SampleGrid grid_;
   std::vector<float> nearness_;
   std::vector<std::uint32_t> id_;

@@ -22,6 +22,16 @@ struct Found {
   std::int32_t twice_area[kMost];
 };
 
+PROBE_CLONES void gather(const std::int32_t* __restrict from, const std::uint16_t* __restrict at,
+                         std::size_t count, std::int32_t* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = from[at[i]];
+}
+
+PROBE_CLONES void gather(const float* __restrict from, const std::uint16_t* __restrict at,
+                         std::size_t count, float* __restrict to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = from[at[i]];
+}
+
 PROBE_CLONES std::int32_t sort_out(const Corners& __restrict corners, std::size_t count,
                                    const SampleGrid& grid, std::int32_t right, std::int32_t bottom,
                                    Found& __restrict found) {
@@ -60,7 +70,7 @@ PROBE_CLONES std::int32_t sort_out(const Corners& __restrict corners, std::size_
 
 // Whether triangles of less than a pixel hold the sample of that place in some pixel, where, and
 // how near they are there.
-PROBE_CLONES void find_held(const Corners& __restrict corners, const Found& __restrict found,
+PROBE_CLONES void find_held(const Corners& __restrict corners, const float* __restrict inverse,
                             std::size_t count, std::int32_t dx, std::int32_t dy, std::int32_t width,
                             std::int32_t height, std::int32_t* __restrict holds,
                             std::int32_t* __restrict pixel, float* __restrict nearness) {
@@ -82,14 +92,19 @@ PROBE_CLONES void find_held(const Corners& __restrict corners, const Found& __re
     };
     const std::int32_t e0 = edge(bx, by, cx, cy), e1 = edge(cx, cy, ax, ay),
                        e2 = edge(ax, ay, bx, by);
-    const auto inverse = static_cast<float>(1 / static_cast<double>(found.twice_area[i]));
-    nearness[i] = static_cast<float>(e0) * (corners.nearness[0][i] * inverse) +
-                  static_cast<float>(e1) * (corners.nearness[1][i] * inverse) +
-                  static_cast<float>(e2) * (corners.nearness[2][i] * inverse);
+    nearness[i] = static_cast<float>(e0) * (corners.nearness[0][i] * inverse[i]) +
+                  static_cast<float>(e1) * (corners.nearness[1][i] * inverse[i]) +
+                  static_cast<float>(e2) * (corners.nearness[2][i] * inverse[i]);
     pixel[i] = row * width + column;
     const bool is_in = (column >= 0) & (column < width) & (row >= 0) & (row < height);
-    holds[i] = is(((e0 | e1 | e2) >= 0) & is_in) & found.is_tiny[i];
+    holds[i] = is(((e0 | e1 | e2) >= 0) & is_in);
   }
+}
+
+PROBE_CLONES void invert(const std::int32_t* __restrict twice_area, std::size_t count,
+                         float* __restrict inverse) {
+  for (std::size_t i = 0; i < count; ++i)
+    inverse[i] = static_cast<float>(1 / static_cast<double>(twice_area[i]));
 }
 
 }  // namespace
@@ -99,11 +114,9 @@ void find_seen(const SmallTriangles& triangles, const SampleBuffer& picture, See
   const std::size_t count = triangles.count;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint16_t* corner = triangles.corner[k == 0 ? 0 : 3 - k];
-    for (std::size_t i = 0; i < count; ++i) {
-      corners.x[k][i] = triangles.x[corner[i]];
-      corners.y[k][i] = triangles.y[corner[i]];
-      corners.nearness[k][i] = triangles.nearness[corner[i]];
-    }
+    gather(triangles.x, corner, count, corners.x[k]);
+    gather(triangles.y, corner, count, corners.y[k]);
+    gather(triangles.nearness, corner, count, corners.nearness[k]);
   }
   const SampleGrid& grid = picture.grid();
   const std::int32_t width = picture.width(), height = picture.height();
@@ -116,15 +129,31 @@ void find_seen(const SmallTriangles& triangles, const SampleBuffer& picture, See
     out.draws += static_cast<std::size_t>(found.is_drawn[i]);
   }
   if (!any_tiny) return;
+  Corners tiny;
+  std::uint16_t which[kMost];
+  std::int32_t twice_area[kMost];
+  std::size_t tinies = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    which[tinies] = static_cast<std::uint16_t>(i);
+    twice_area[tinies] = found.twice_area[i];
+    tinies += static_cast<std::size_t>(found.is_tiny[i]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    gather(corners.x[k], which, tinies, tiny.x[k]);
+    gather(corners.y[k], which, tinies, tiny.y[k]);
+    gather(corners.nearness[k], which, tinies, tiny.nearness[k]);
+  }
+  float inverse[kMost];
+  invert(twice_area, tinies, inverse);
   for (std::size_t k = 0; k < grid.across.size(); ++k) {
     std::int32_t holds[kMost], pixel[kMost];
     float nearness[kMost];
-    find_held(corners, found, count, grid.across[k], grid.down[k], width, height, holds, pixel,
+    find_held(tiny, inverse, tinies, grid.across[k], grid.down[k], width, height, holds, pixel,
               nearness);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < tinies; ++i) {
       out.samples[out.held] = {
           4 * static_cast<std::uint32_t>(pixel[i]) + static_cast<std::uint32_t>(k), nearness[i],
-          static_cast<std::uint32_t>(i)};
+          which[i]};
       out.held += static_cast<std::size_t>(holds[i]);
     }
   }

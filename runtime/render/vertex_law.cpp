@@ -47,21 +47,27 @@ struct LightBlock {
 
 PROBE_CLONES void begin_light(LightBlock& block, const Float3& eye,
                               const std::array<float, 3>& ambient) {
-  const float *px = block.position[0], *py = block.position[1], *pz = block.position[2];
+  const std::size_t count = block.count;
+  const float* __restrict const px = block.position[0];
+  const float* __restrict const py = block.position[1];
+  const float* __restrict const pz = block.position[2];
+  float* __restrict const vx = block.view[0].data();
+  float* __restrict const vy = block.view[1].data();
+  float* __restrict const vz = block.view[2].data();
   const float ex = eye.x(), ey = eye.y(), ez = eye.z();
-  for (std::size_t i = 0; i < block.count; ++i) {
+  PROBE_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
     const float x = ex - px[i], y = ey - py[i], z = ez - pz[i];
     const float square = x * x + (y * y + z * z);
-    const float length = square > 0 ? std::sqrt(square) : 1;
-    block.view[0][i] = x / length;
-    block.view[1][i] = y / length;
-    block.view[2][i] = z / length;
+    const float root = std::sqrt(square);
+    const float length = square > 0 ? root : 1;
+    vx[i] = x / length;
+    vy[i] = y / length;
+    vz[i] = z / length;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < block.count; ++i) {
-      block.light[k][i] = ambient[k];
-      block.gloss[k][i] = 0;
-    }
+    std::fill_n(block.light[k].data(), count, ambient[k]);
+    std::fill_n(block.gloss[k].data(), count, 0.0f);
   }
 }
 
@@ -73,67 +79,126 @@ struct LampFactors {
   std::array<float, 3> place, forward;
 };
 
-// Corner i, lit from (x, y, z), unit, by what reaches it of the lamp.
-template <typename Reach>
-[[gnu::always_inline]] inline void add_lamp(LightBlock& block, const LampFactors& by,
-                                            const Reach& reach_of) {
-  const float *nx = block.normal[0], *ny = block.normal[1], *nz = block.normal[2];
-  const std::array<float, 3> ambient = by.lamp.ambient, diffuse = by.lamp.diffuse,
-                             specular = by.lamp.specular;
-  const float* const shine = by.shine;
-  const float of_material = by.specular;
+// Towards a lamp, unit, and what reaches corners of it. Loops do little each, so that compilers
+// turn them into vector instructions.
+struct LampReach {
+  std::array<std::array<float, LightBlock::kMost>, 3> toward;
+  std::array<float, LightBlock::kMost> share;
+  std::array<float, LightBlock::kMost> fade, facing, along, bright;  // on the way there
+};
+
+PROBE_CLONES void reach_of_spot(const LightBlock& block, const LampFactors& by,
+                                LampReach& __restrict reach) {
+  const std::size_t count = block.count;
+  const float* __restrict const px = block.position[0];
+  const float* __restrict const py = block.position[1];
+  const float* __restrict const pz = block.position[2];
+  float* __restrict const to_x = reach.toward[0].data();
+  float* __restrict const to_y = reach.toward[1].data();
+  float* __restrict const to_z = reach.toward[2].data();
+  float* __restrict const share = reach.share.data();
+  const std::array<float, 3> place = by.place, forward = by.forward, fade = by.lamp.fade;
+  const float cutoff = by.lamp.cutoff_cosine;
+  const float* __restrict const narrowing = by.narrowing;
+  float* __restrict const along_of = reach.along.data();
+  float* __restrict const fade_of = reach.fade.data();
   PROBE_INDEPENDENT
-  for (std::size_t i = 0; i < block.count; ++i) {
-    float x = by.place[0], y = by.place[1], z = by.place[2];
-    // Nothing reaches what lies beside a spot: zeros are added, which change no light.
-    const float reach = reach_of(i, x, y, z);
-    const float facing = nx[i] * x + (ny[i] * y + nz[i] * z);
-    const bool is_lit = facing > 0;
-    const float hx = x + block.view[0][i], hy = y + block.view[1][i], hz = z + block.view[2][i];
+  for (std::size_t i = 0; i < count; ++i) {
+    const float dx = place[0] - px[i], dy = place[1] - py[i], dz = place[2] - pz[i];
+    const float distance = std::sqrt(dx * dx + (dy * dy + dz * dz));
+    const float by_distance = distance > 0 ? distance : 1;
+    const float x = dx / by_distance, y = dy / by_distance, z = dz / by_distance;
+    to_x[i] = x;
+    to_y[i] = y;
+    to_z[i] = z;
+    along_of[i] = -(x * forward[0] + (y * forward[1] + z * forward[2]));
+    fade_of[i] = fade[0] + distance * (fade[1] + distance * fade[2]);
+  }
+  // Nothing reaches what lies beside a spot: zeros are added, which change no light.
+  PowerTable::read_all(narrowing, along_of, count, share);
+  PROBE_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    const float lit = share[i] / fade_of[i];
+    share[i] = along_of[i] < cutoff ? 0.0f : lit;
+  }
+}
+
+PROBE_CLONES void add_lamp(LightBlock& block, const LampFactors& by, LampReach& __restrict reach) {
+  const std::size_t count = block.count;
+  const float* __restrict const nx = block.normal[0];
+  const float* __restrict const ny = block.normal[1];
+  const float* __restrict const nz = block.normal[2];
+  const float* __restrict const vx = block.view[0].data();
+  const float* __restrict const vy = block.view[1].data();
+  const float* __restrict const vz = block.view[2].data();
+  const float* __restrict const lx = reach.toward[0].data();
+  const float* __restrict const ly = reach.toward[1].data();
+  const float* __restrict const lz = reach.toward[2].data();
+  const float* __restrict const share = reach.share.data();
+  const float* __restrict const shine = by.shine;
+  const float of_material = by.specular;
+  float* __restrict const facing_of = reach.facing.data();
+  float* __restrict const along_of = reach.along.data();
+  float* __restrict const bright_of = reach.bright.data();
+  PROBE_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    facing_of[i] = nx[i] * lx[i] + (ny[i] * ly[i] + nz[i] * lz[i]);
+    const float hx = lx[i] + vx[i], hy = ly[i] + vy[i], hz = lz[i] + vz[i];
     const float square = hx * hx + (hy * hy + hz * hz);
-    const float length = square > 0 ? std::sqrt(square) : 1;
-    const float along = nx[i] * (hx / length) + (ny[i] * (hy / length) + nz[i] * (hz / length));
-    const float power =
-        PowerTable::read(shine, along < 0.0f ? 0.0f : (1.0f < along ? 1.0f : along));
-    const float bright = is_lit ? reach * of_material * power : 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float with_ambient = block.light[k][i] + reach * ambient[k];
-      const float straight = reach * diffuse[k] * facing;
-      block.light[k][i] = with_ambient + (is_lit ? straight : 0);
-      block.gloss[k][i] += bright * specular[k];
+    const float root = std::sqrt(square);
+    const float length = square > 0 ? root : 1;
+    along_of[i] = nx[i] * (hx / length) + (ny[i] * (hy / length) + nz[i] * (hz / length));
+  }
+  PowerTable::read_all(shine, along_of, count, bright_of);
+  PROBE_INDEPENDENT
+  for (std::size_t i = 0; i < count; ++i) {
+    const float bright = share[i] * of_material * bright_of[i];
+    bright_of[i] = facing_of[i] > 0 ? bright : 0.0f;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float ambient = by.lamp.ambient[k], diffuse = by.lamp.diffuse[k],
+                specular = by.lamp.specular[k];
+    float* __restrict const light = block.light[k].data();
+    float* __restrict const gloss = block.gloss[k].data();
+    PROBE_INDEPENDENT
+    for (std::size_t i = 0; i < count; ++i) {
+      const float with_ambient = light[i] + share[i] * ambient;
+      const float straight = share[i] * diffuse * facing_of[i];
+      light[i] = with_ambient + (facing_of[i] > 0 ? straight : 0.0f);
+      gloss[i] += bright_of[i] * specular;
     }
   }
 }
 
-PROBE_CLONES void add_sun(LightBlock& block, const LampFactors& by) {
-  add_lamp(block, by, [](std::size_t, float, float, float) { return 1.0f; });
+// What comes from one direction reaches all.
+void reach_of_sun(const LightBlock& block, const LampFactors& by, LampReach& reach) {
+  for (std::size_t k = 0; k < 3; ++k) std::fill_n(reach.toward[k].data(), block.count, by.place[k]);
+  std::fill_n(reach.share.data(), block.count, 1.0f);
 }
 
-PROBE_CLONES void add_spot(LightBlock& block, const LampFactors& by) {
-  const float *px = block.position[0], *py = block.position[1], *pz = block.position[2];
-  const std::array<float, 3> forward = by.forward, fade = by.lamp.fade;
-  const float cutoff = by.lamp.cutoff_cosine;
-  const float* const narrowing = by.narrowing;
-  add_lamp(block, by, [=](std::size_t i, float& x, float& y, float& z) {
-    x -= px[i];
-    y -= py[i];
-    z -= pz[i];
-    const float distance = std::sqrt(x * x + (y * y + z * z));
-    const float by_distance = distance > 0 ? distance : 1;
-    x /= by_distance;
-    y /= by_distance;
-    z /= by_distance;
-    const float along = -(x * forward[0] + (y * forward[1] + z * forward[2]));
-    const float narrow =
-        PowerTable::read(narrowing, along < 0.0f ? 0.0f : (1.0f < along ? 1.0f : along));
-    const float reach = narrow / (fade[0] + distance * (fade[1] + distance * fade[2]));
-    return along < cutoff ? 0 : reach;
-  });
+PROBE_CLONES void end_light(const LightBlock& block, std::size_t k, float share, float emission,
+                            float of_material, float* __restrict color) {
+  const float* __restrict const light = block.light[k].data();
+  const float* __restrict const gloss = block.gloss[k].data();
+  for (std::size_t i = 0; i < block.count; ++i) {
+    const float sum = share * (emission + light[i] * of_material) + gloss[i];
+    color[i] = sum < 0.0f ? 0.0f : (1.0f < sum ? 1.0f : sum);
+  }
 }
 
 bool is_strength(double value) { return std::isfinite(value) && value >= 0; }
 
 }  // namespace
+
+PROBE_CLONES void PowerTable::read_all(const float* __restrict values, const float* __restrict x,
+                                       std::size_t count, float* __restrict powers) {
+  for (std::size_t i = 0; i < count; ++i) {
+    float inside = x[i];
+    inside = inside < 0.0f ? 0.0f : inside;
+    powers[i] = 1.0f < inside ? 1.0f : inside;
+  }
+  for (std::size_t i = 0; i < count; ++i) powers[i] = read(values, powers[i]);
+}
 
 PowerTable::PowerTable(double exponent) {
   constexpr double kNothing = -700;  // e^-700 is no float any more
@@ -222,6 +287,7 @@ void LampsThere::light(const VertexMaterial& material, const CornerArrays& corne
       block.normal[k] = corners.normal[k] + first;
     }
     begin_light(block, eye, ambient);
+    LampReach reach;
     for (const Lamp& lamp : lamps) {
       if (!lamp.may_reach(around)) continue;  // it adds nothing to any
       const LampFactors by{lamp,
@@ -230,16 +296,11 @@ void LampsThere::light(const VertexMaterial& material, const CornerArrays& corne
                            material.specular,
                            {lamp.place.x(), lamp.place.y(), lamp.place.z()},
                            {lamp.forward.x(), lamp.forward.y(), lamp.forward.z()}};
-      lamp.is_spot ? add_spot(block, by) : add_sun(block, by);
+      lamp.is_spot ? reach_of_spot(block, by, reach) : reach_of_sun(block, by, reach);
+      add_lamp(block, by, reach);
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-      float* color = corners.color[k] + first;
-      for (std::size_t i = 0; i < block.count; ++i)
-        color[i] =
-            std::clamp(share * (material.emission[k] + block.light[k][i] * material.color[k]) +
-                           block.gloss[k][i],
-                       0.0f, 1.0f);
-    }
+    for (std::size_t k = 0; k < 3; ++k)
+      end_light(block, k, share, material.emission[k], material.color[k], corners.color[k] + first);
   }
 }
 

@@ -33,6 +33,8 @@ class PowerTable {
     const float low = values[i];
     return low + (values[i + 1] - low) * (place - static_cast<float>(i));
   }
+  // Of many, those beyond [0, 1] being its ends.
+  static void read_all(const float* values, const float* x, std::size_t count, float* powers);
   const float* values() const { return values_.data(); }
 
  private:

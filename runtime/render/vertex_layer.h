@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "runtime/render/placed_mesh.h"
 #include "runtime/render/sample_buffer.h"
 #include "runtime/render/seen_faces.h"
+#include "runtime/render/seen_fragments.h"
 
 namespace probe::render {
 
@@ -28,38 +31,25 @@ class VertexLayer {
   const SampleBuffer& buffer() const { return buffer_; }
 
   // What pixels, neighbours together, show of what is drawn: colour, depth and id, into `picture`.
-  // Where a mirror is seen, `mirrored` is what it shows; null: none is.
-  void show(std::span<const PixelAt> pixels, VertexLayer* mirrored, Picture& picture);
+  // Where `mirror` is seen, what `mirrored` shows is added.
+  void show(std::span<const PixelAt> pixels, const std::optional<PlacedMeshes::Mirror>& mirror,
+            VertexLayer& mirrored, Picture& picture);
 
  private:
-  // What one triangle shows in a pixel.
-  struct Fragment {
-    Rgb color;             // 0 .. 255
-    const SeenFace* face;  // null: nothing is there
-    float denominator;
-    int samples;  // of the pixel's
-  };
-  // Fragments of one texture, and where it is read for them.
-  struct Textured {
-    const MipChain* texture = nullptr;
-    std::vector<std::uint32_t> fragment;
-    std::vector<float> u, v, texels;
-  };
-
-  void find_faces(std::span<const PixelAt> pixels);
-  void add_fragment(const SeenFace& face, int samples, PixelAt at);
-  void read_textures();
-  void show_some(std::span<const PixelAt> pixels, VertexLayer* mirrored, Picture& picture);
-  const Fragment& middle_of(std::span<const Fragment> pixel, PixelAt at) const;
+  void show_own(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror* mirror,
+                const Picture* reflected, Picture& picture);
+  void find_fragments(std::span<const PixelAt> pixels);
+  void add_reflected(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror& mirror,
+                     const Picture& reflected);
+  void write(std::span<const PixelAt> pixels, Picture& picture) const;
+  std::size_t middle_of(std::size_t first, std::size_t end) const;
 
   PlacedMeshes meshes_;
   SampleBuffer buffer_;
   SeenFaces faces_;
-  std::vector<Fragment> fragments_;
+  SeenFragments fragments_;
   std::vector<std::uint32_t> ends_;  // in fragments_, by pixel
-  std::vector<Textured> textured_;
-  std::size_t last_textured_ = 0;  // neighbours are mostly of one texture
-  std::vector<float> texels_;
+  std::vector<PixelAt> mirror_pixels_;
   Picture reflected_;  // a layer that is mirrored shows itself here
 };
 

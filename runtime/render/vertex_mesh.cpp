@@ -26,16 +26,12 @@ std::array<float, 3> display(const std::array<float, 3>& linear) {
 // All of it lies in one plane and looks one way.
 bool is_flat(const VertexMesh::Part& part) {
   constexpr float kFlat = 1e-5f;
-  const Float3 normal(part.normals[0], part.normals[1], part.normals[2]);
-  const float height = normal.dot(Float3(part.x[0], part.y[0], part.z[0]));
-  for (std::size_t i = 0; i < part.x.size(); ++i) {
-    const std::size_t n = 3 * i;
-    const Float3 other(part.normals[n], part.normals[n + 1], part.normals[n + 2]);
-    if ((other - normal).norm() > kFlat ||
-        std::abs(normal.dot(Float3(part.x[i], part.y[i], part.z[i])) - height) > kFlat)
-      return false;
-  }
-  return true;
+  const Float3 normal = part.corners[0].normal;
+  const float height = normal.dot(part.corners[0].place);
+  return std::ranges::all_of(part.corners, [&](const VertexCorner& corner) {
+    return (corner.normal - normal).norm() <= kFlat &&
+           std::abs(normal.dot(corner.place) - height) <= kFlat;
+  });
 }
 
 }  // namespace
@@ -51,24 +47,26 @@ Result<std::shared_ptr<const VertexMesh>> VertexMesh::build(
     PROBE_TRY(check_texture(*mesh, material.base_color_texture));
     Part part;
     const std::size_t corners = from.positions.size() / 3;
+    const bool is_textured = material.base_color_texture >= 0 && !from.uv.empty();
+    std::array<std::vector<float>, 3> places;
     for (std::size_t i = 0; i < corners; ++i) {
-      part.x.push_back(from.positions[3 * i]);
-      part.y.push_back(from.positions[3 * i + 1]);
-      part.z.push_back(from.positions[3 * i + 2]);
+      VertexCorner corner;
+      corner.place = {from.positions[3 * i], from.positions[3 * i + 1], from.positions[3 * i + 2]};
+      for (std::size_t k = 0; k < 3; ++k) places[k].push_back(from.positions[3 * i + k]);
       const Float3 normal(from.normals[3 * i], from.normals[3 * i + 1], from.normals[3 * i + 2]);
-      const Float3 unit = normal.norm() > 0 ? Float3(normal.normalized()) : Float3::UnitZ();
-      part.normals.insert(part.normals.end(), {unit.x(), unit.y(), unit.z()});
+      if (normal.norm() > 0) corner.normal = normal.normalized();
+      if (is_textured) corner.uv = {from.uv[2 * i], from.uv[2 * i + 1]};
+      part.corners.push_back(corner);
     }
     part.indices = from.indices;
-    part.around = ball_around(part.x, part.y, part.z);
-    part.clusters = MeshClusters::build(part.x, part.y, part.z, part.indices);
+    part.around = ball_around(places[0], places[1], places[2]);
+    part.clusters = MeshClusters::build(places[0], places[1], places[2], part.indices);
     part.material.emission = display(material.emission);
     part.material.specular = material.specular;
     auto& shine = shines[material.shininess];
     if (!shine) shine = std::make_shared<const PowerTable>(128.0 * material.shininess);
     part.material.shine = shine;
-    if (material.base_color_texture >= 0 && !from.uv.empty()) {
-      part.uv = from.uv;
+    if (is_textured) {
       const MipChain*& texture = textures[material.base_color_texture];
       if (texture == nullptr) {
         made->textures.push_back(std::make_unique<const MipChain>(

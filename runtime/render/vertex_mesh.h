@@ -1,7 +1,8 @@
-// A mesh as the vertex law draws it: corners as arrays, parts with what surrounds them, textures at
+// A mesh as the vertex law draws it: corners, parts with what surrounds them, textures at
 // falling sizes. Read-only and shared, one a mesh (SceneStore).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -14,11 +15,16 @@
 
 namespace probe::render {
 
+// Whoever needs a corner reads one line of the cache.
+struct alignas(32) VertexCorner {
+  Float3 place = Float3::Zero();    // m, in the mesh's frame
+  Float3 normal = Float3::UnitZ();  // unit
+  std::array<float, 2> uv{};        // 0 where there is no texture
+};
+
 struct VertexMesh {
   struct Part {
-    std::vector<float> x, y, z;  // of corners, m, in the mesh's frame
-    std::vector<float> normals;  // 3 a corner, unit
-    std::vector<float> uv;       // 2 a corner; none: no texture
+    std::vector<VertexCorner> corners;
     std::vector<std::uint32_t> indices;
     Ball around;
     MeshClusters clusters;  // the same triangles, as they are drawn

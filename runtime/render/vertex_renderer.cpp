@@ -3,6 +3,7 @@
 #include "runtime/render/vertex_renderer.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
@@ -13,6 +14,8 @@
 
 namespace probe::render {
 namespace {
+
+using SeenMirror = std::optional<PlacedMeshes::Mirror>;
 
 class VertexRenderer final : public Renderer {
  public:
@@ -32,9 +35,9 @@ class VertexRenderer final : public Renderer {
       place(seen_, i, poses[i]);
       draw(seen_, spec_.statics.size() + i, &touched_);
     }
-    const bool has_mirror = reflect(spec_.camera, poses);
-    list_changed(touched_, has_mirror);
-    show(seen_, has_mirror, frame_);
+    const auto mirror = reflect(spec_.camera, poses);
+    list_changed(touched_, mirror);
+    show(mirror, frame_);
     return view();
   }
 
@@ -58,13 +61,11 @@ class VertexRenderer final : public Renderer {
     const FlushDenormals guard;
     is_still_ = false;
     begin(camera);
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      place(seen_, i, poses[i]);
-      draw(seen_, spec_.statics.size() + i, nullptr);
-    }
-    const bool has_mirror = reflect(camera, poses);
+    for (std::size_t i = 0; i < poses.size(); ++i) place(seen_, i, poses[i]);
+    seen_.meshes().draw_all(seen_.buffer());
+    const auto mirror = reflect(camera, poses);
     list_all();
-    show(seen_, has_mirror, frame_);
+    show(mirror, frame_);
     return view();
   }
 
@@ -91,19 +92,17 @@ class VertexRenderer final : public Renderer {
   void begin(const Camera& camera) {
     seen_.meshes().look_from(camera);
     seen_.buffer().clear();
-    for (std::size_t i = 0; i < spec_.statics.size(); ++i) {
-      seen_.meshes().place(i, Pose{}, lamps_);
-      draw(seen_, i, nullptr);
-    }
+    for (std::size_t i = 0; i < spec_.statics.size(); ++i) seen_.meshes().place(i, Pose{}, lamps_);
   }
 
   void begin_still() {
     begin(spec_.camera);
+    for (std::size_t i = 0; i < spec_.statics.size(); ++i) draw(seen_, i, nullptr);
     statics_ = seen_.buffer();
     still_ = statics_;
     rests_.assign(spec_.dynamics.size(), {});
     list_all();
-    show(seen_, false, frame_);
+    show({}, frame_);
     still_frame_ = frame_;
     is_still_ = true;
     touched_.clear(frame_.height);
@@ -134,30 +133,30 @@ class VertexRenderer final : public Renderer {
       draw(seen_, spec_.statics.size() + i, nullptr);
     }
     touched_.add(0, frame_.height - 1, 0, frame_.width - 1);
-    list_changed(touched_, false);
-    show(seen_, false, still_frame_);
+    list_changed(touched_, {});
+    show({}, still_frame_);
     still_ = seen_.buffer();
     frame_ = still_frame_;
   }
 
-  // Whether the camera sees a mirror; what it shows is in mirrored_, then, and the pixels it may be
-  // seen in are touched_.
-  bool reflect(const Camera& camera, std::span<const Pose> poses) {
-    const auto mirror = seen_.meshes().mirror();
-    if (!mirror) return false;
+  // The mirror that the camera sees, if it does; what it shows is in mirrored_, then, and the
+  // pixels it is seen in are touched_.
+  SeenMirror reflect(const Camera& camera, std::span<const Pose> poses) {
+    auto mirror = seen_.meshes().mirror();
+    if (!mirror || !mirror->narrow(seen_.buffer())) return {};
     SampleBuffer& buffer = mirrored_.buffer();
     if (buffer.width() == 0)
       buffer.resize(spec_.camera.width, spec_.camera.height, spec_.samples > 1);
     mirrored_.meshes().look_into(camera, *mirror);
-    buffer.clear();
+    buffer.clear(mirror->left, mirror->right, mirror->top, mirror->bottom);
     const std::size_t statics = spec_.statics.size();
     for (std::size_t i = 0; i < statics + poses.size(); ++i) {
       if (i == mirror->instance) continue;
       mirrored_.meshes().place(i, i < statics ? Pose{} : poses[i - statics], lamps_);
-      draw(mirrored_, i, nullptr);
     }
+    mirrored_.meshes().draw_all(buffer);
     touched_.add(mirror->top, mirror->bottom, mirror->left, mirror->right);
-    return true;
+    return mirror;
   }
 
   // The last frame's moving things go.
@@ -201,21 +200,21 @@ class VertexRenderer final : public Renderer {
   }
 
   void list_all() {
-    frame_.clear(spec_.camera.width, spec_.camera.height);
+    frame_.resize(spec_.camera.width, spec_.camera.height);
     list([this](int) { return RowSpans::Span{0, frame_.width}; }, [](int, int) { return true; });
   }
 
-  // Pixels that show other triangles than what stands still; `all` of the rows where a mirror is.
-  void list_changed(const RowSpans& rows, bool all) {
+  // Pixels that show other triangles than what stands still, and those that show a mirror.
+  void list_changed(const RowSpans& rows, const SeenMirror& mirror) {
     list([&](int y) { return rows.rows()[static_cast<std::size_t>(y)]; },
          [&](int x, int y) {
            const std::uint32_t* ids = seen_.buffer().ids(x, y);
-           return all || !std::equal(ids, ids + 4, still_.ids(x, y));
+           return !std::equal(ids, ids + 4, still_.ids(x, y)) || (mirror && mirror->is_in(ids));
          });
   }
 
-  void show(VertexLayer& layer, bool has_mirror, Picture& picture) {
-    layer.show(pixels_, has_mirror ? &mirrored_ : nullptr, picture);
+  void show(const SeenMirror& mirror, Picture& picture) {
+    seen_.show(pixels_, mirror, mirrored_, picture);
   }
 
   SceneSpec spec_;
