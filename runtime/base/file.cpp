@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,8 @@ std::string without_links(const std::string& path) {
   }
   return place.string();
 }
+
+constexpr std::size_t kCopied = std::size_t{1} << 20;  // bytes at once
 
 class Descriptor {
  public:
@@ -118,26 +121,42 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes) {
   return pending.keep();
 }
 
-Status copy_to_disk(const std::string& from, const std::string& to) {
+Status copy_bytes(const std::string& from, const std::string& to) {
   PROBE_ASSIGN(const Descriptor in, open_regular(from, Fault::kIo));
   const int made = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0644);
   if (made < 0) return io_failure("cannot be created", to);
   const Descriptor out(made);
-  std::vector<char> buffer(std::size_t{1} << 20);
+  // Only touched by as many bytes as there are.
+  const std::unique_ptr<char[]> buffer(new char[kCopied]);
   for (;;) {
-    const ssize_t got = ::read(in.get(), buffer.data(), buffer.size());
+    const ssize_t got = ::read(in.get(), buffer.get(), kCopied);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return io_failure("cannot be read", from);
-    if (got == 0) break;
+    if (got == 0) return {};
     for (ssize_t done = 0; done < got;) {
       const ssize_t put =
-          ::write(out.get(), buffer.data() + done, static_cast<std::size_t>(got - done));
+          ::write(out.get(), buffer.get() + done, static_cast<std::size_t>(got - done));
       if (put < 0 && errno == EINTR) continue;
       if (put < 0) return io_failure("cannot be written", to);
       done += put;
     }
   }
-  if (::fsync(out.get()) != 0) return io_failure("cannot be forced to the disk", to);
+}
+
+Status copy_to_disk(const std::string& from, const std::string& to) {
+  PROBE_TRY(copy_bytes(from, to));
+  return sync_disk(std::span(&to, 1));
+}
+
+Status sync_disk(std::span<const std::string> paths) {
+  constexpr std::size_t kFew = 16;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const Descriptor file(::open(paths[i].c_str(), O_RDONLY | O_CLOEXEC));
+    if (file.get() < 0) return io_failure("cannot be opened", paths[i]);
+    // Where that cannot be asked, each is.
+    if (i == 0 && paths.size() > kFew && ::syncfs(file.get()) == 0) return {};
+    if (::fsync(file.get()) != 0) return io_failure("cannot be forced to the disk", paths[i]);
+  }
   return {};
 }
 

@@ -39,6 +39,13 @@ Status write_file(const std::string& path, std::span<const std::byte> bytes);
 // name is not, see sync_folder. Fails (kIo, where = the path at fault).
 Status copy_to_disk(const std::string& from, const std::string& to);
 
+// The same without waiting for the disk: sync_disk does, for many at once.
+Status copy_bytes(const std::string& from, const std::string& to);
+
+// Waits until the disk has all of these files. More than a few: all that its file system has yet to
+// write, in one. Fails (kIo, where = the path at fault).
+Status sync_disk(std::span<const std::string> paths);
+
 // What read_file refuses, and how.
 struct ReadRules {
   std::size_t most = std::size_t{1} << 30;  // bytes

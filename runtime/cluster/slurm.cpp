@@ -15,6 +15,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/cluster/program.h"
+#include "runtime/cluster/run_words.h"
 #include "runtime/run/selection.h"
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/store.h"
@@ -31,45 +32,6 @@ Failure failed(const std::string& message, const std::string& where) {
 std::string trimmed(std::string text) {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   return text;
-}
-
-// The words of `vlaprobe run` for what the options choose, but plan, policy, name, folder, jobs and
-// shard.
-std::vector<std::string> run_words(const run::RunOptions& options) {
-  std::vector<std::string> words;
-  const auto add = [&](const char* flag, const std::string& value) {
-    words.insert(words.end(), {flag, value});
-  };
-  if (!options.suite.empty()) add("--suite", options.suite);
-  if (options.tasks != "*") add("--tasks", options.tasks);
-  if (options.episodes) {
-    add("--episodes",
-        std::to_string(options.episodes->first) + "-" + std::to_string(options.episodes->second));
-  }
-  if (!options.seeds.empty()) {
-    std::string seeds;
-    for (const int seed : options.seeds) seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
-    add("--seeds", seeds);
-  }
-  if (options.video != run::VideoChoice::kNone) {
-    add("--video", options.video == run::VideoChoice::kAll ? "all" : "failures");
-  }
-  if (!options.assets.empty()) add("--assets", absolute_path(options.assets));
-  add("--retries", std::to_string(options.retries));
-  add("--give-up-after", std::to_string(options.give_up_after));
-  if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
-  if (options.accepts_any_certificate) words.push_back("--insecure");
-  if (options.live) {
-    if (options.live->delay_s) {
-      char delay[40];
-      std::snprintf(delay, sizeof delay, "%.17gs", *options.live->delay_s);
-      add("--live-delay", delay);
-    } else {
-      words.push_back("--live");
-    }
-    add("--live-most-held", std::to_string(std::lround(100 * options.live->most_held)));
-  }
-  return words;
 }
 
 using store::EpisodeKey;

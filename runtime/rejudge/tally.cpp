@@ -15,31 +15,36 @@
 #include "runtime/store/store.h"
 
 namespace probe::rejudge {
+struct TallyText::Parts {
+  struct Column {
+    std::string name;
+    bool is_bool = true;
+    int trues = 0;
+    std::vector<double> values;
+  };
+
+  // What a policy says of some episodes.
+  struct Remark {
+    std::string text;
+    int count = 0;
+  };
+
+  struct Tally {
+    int valid = 0, invalid = 0;
+    store::NotAttempted not_attempted;
+    std::string first_invalid;  // which, and why
+    std::vector<Remark> remarks;
+    std::vector<Column> columns;
+  };
+
+  std::vector<std::string> order;  // of tasks
+  std::map<std::string, Tally> tallies;
+  static void add(Tally& tally, const store::ResultRow& row);
+};
+
 namespace {
 
 constexpr std::size_t kMostRemarks = 3, kLongestRemark = 300;  // of a task; characters
-
-struct Column {
-  std::string name;
-  bool is_bool = true;
-  int trues = 0;
-  int never = 0;  // of a read-out that has a value for it
-  std::vector<double> values;
-};
-
-// What a policy says of some episodes.
-struct Remark {
-  std::string text;
-  int count = 0;
-};
-
-struct Tally {
-  int valid = 0, invalid = 0;
-  store::NotAttempted not_attempted;
-  std::string first_invalid;  // which, and why
-  std::vector<Remark> remarks;
-  std::vector<Column> columns;
-};
 
 // What the plan says of one metric; without it a number is a number.
 struct MetricKind {
@@ -57,7 +62,31 @@ MetricKind kind_of(const plan::Plan* plan, const std::string& task, const std::s
           plan::find_readout(plan->metrics(record)[*at].readout)->never};
 }
 
-void add(Tally& tally, const store::ResultRow& row) {
+// "mean 91.2cm, 88cm .. 1.02m", and how often it never came.
+std::string numbers_text(std::vector<double> values, const MetricKind& kind) {
+  const auto never = kind.never ? std::erase(values, *kind.never) : 0;
+  std::string text;
+  if (!values.empty()) {
+    double sum = 0;
+    for (const double value : values) sum += value;
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    text = fmt::format("mean {}, {} .. {}",
+                       quantity(sum / static_cast<double>(values.size()), kind.dimension),
+                       quantity(*low, kind.dimension), quantity(*high, kind.dimension));
+  }
+  if (never > 0) text += fmt::format("{}never in {}", text.empty() ? "" : "; ", never);
+  return text;
+}
+
+}  // namespace
+
+std::optional<plan::Plan> stored_plan(const std::string& dir) {
+  auto plan = store::open_run_plan(dir);
+  if (!plan) return std::nullopt;
+  return std::move(plan).value();
+}
+
+void TallyText::Parts::add(Tally& tally, const store::ResultRow& row) {
   if (store::is_not_attempted(row)) {
     tally.not_attempted.add(row);
     return;
@@ -79,7 +108,7 @@ void add(Tally& tally, const store::ResultRow& row) {
     auto column = std::find_if(tally.columns.begin(), tally.columns.end(),
                                [&](const Column& known) { return known.name == metric.name; });
     if (column == tally.columns.end()) {
-      tally.columns.push_back({metric.name, metric.is_bool, 0, 0, {}});
+      tally.columns.push_back({metric.name, metric.is_bool, 0, {}});
       column = tally.columns.end() - 1;
     }
     column->trues += metric.is_bool && metric.value != 0 ? 1 : 0;
@@ -87,43 +116,26 @@ void add(Tally& tally, const store::ResultRow& row) {
   }
 }
 
-// "mean 91.2cm, 88cm .. 1.02m", and how often it never came.
-std::string numbers_text(Column column, const MetricKind& kind) {
-  if (kind.never) column.never = static_cast<int>(std::erase(column.values, *kind.never));
-  std::string text;
-  if (!column.values.empty()) {
-    double sum = 0;
-    for (const double value : column.values) sum += value;
-    const auto [low, high] = std::minmax_element(column.values.begin(), column.values.end());
-    text = fmt::format("mean {}, {} .. {}",
-                       quantity(sum / static_cast<double>(column.values.size()), kind.dimension),
-                       quantity(*low, kind.dimension), quantity(*high, kind.dimension));
-  }
-  if (column.never > 0)
-    text += fmt::format("{}never in {}", text.empty() ? "" : "; ", column.never);
-  return text;
-}
+TallyText::TallyText() : parts_(std::make_unique<Parts>()) {}
+TallyText::~TallyText() = default;
 
-}  // namespace
-
-std::optional<plan::Plan> stored_plan(const std::string& dir) {
-  auto plan = store::open_run_plan(dir);
-  if (!plan) return std::nullopt;
-  return std::move(plan).value();
+void TallyText::add(const store::ResultRow& row) {
+  const auto [it, fresh] = parts_->tallies.try_emplace(row.task);
+  if (fresh) parts_->order.push_back(row.task);
+  Parts::add(it->second, row);
 }
 
 std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan* plan) {
-  std::vector<std::string> order;
-  std::map<std::string, Tally> tallies;
-  for (const store::ResultRow& row : rows) {
-    const auto [it, fresh] = tallies.try_emplace(row.task);
-    if (fresh) order.push_back(row.task);
-    add(it->second, row);
-  }
+  TallyText tally;
+  for (const store::ResultRow& row : rows) tally.add(row);
+  return tally.text(plan);
+}
+
+std::string TallyText::text(const plan::Plan* plan) const {
   std::string text;
   const auto out = std::back_inserter(text);
-  for (const std::string& task : order) {
-    const Tally& tally = tallies[task];
+  for (const std::string& task : parts_->order) {
+    const Parts::Tally& tally = parts_->tallies.at(task);
     fmt::format_to(out, "{}: {} episodes", task,
                    tally.valid + tally.invalid + tally.not_attempted.count());
     if (tally.not_attempted.count() > 0)
@@ -132,16 +144,16 @@ std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan*
     if (tally.invalid > 0)
       fmt::format_to(out, ", {} invalid ({})", tally.invalid, tally.first_invalid);
     text += '\n';
-    for (const Column& column : tally.columns) {
+    for (const Parts::Column& column : tally.columns) {
       if (column.is_bool) {
         fmt::format_to(out, "  {:<12} {:>4} of {}\n", column.name, column.trues, tally.valid);
       } else {
         fmt::format_to(out, "  {:<12} {}\n", column.name,
-                       numbers_text(column, kind_of(plan, task, column.name)));
+                       numbers_text(column.values, kind_of(plan, task, column.name)));
       }
     }
-    std::vector<Remark> remarks = tally.remarks;
-    std::ranges::stable_sort(remarks, std::ranges::greater(), &Remark::count);
+    std::vector<Parts::Remark> remarks = tally.remarks;
+    std::ranges::stable_sort(remarks, std::ranges::greater(), &Parts::Remark::count);
     for (std::size_t i = 0; i < remarks.size() && i < kMostRemarks; ++i)
       fmt::format_to(out, "  {} of {}: {}\n", remarks[i].count, tally.valid,
                      printable(remarks[i].text, kLongestRemark));

@@ -2,6 +2,7 @@
 // its mean and extremes with the unit.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,19 @@ namespace probe::rejudge {
 // the first one is named with its reason. Without a plan numbers have no units. A `first` that
 // never came (-1) is counted apart.
 std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan* plan);
+
+// The same of rows that are not all there at once.
+class TallyText {
+ public:
+  TallyText();
+  ~TallyText();
+  void add(const store::ResultRow& row);
+  std::string text(const plan::Plan* plan) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
 
 // The plan that a results folder keeps; nothing when it cannot be read.
 std::optional<plan::Plan> stored_plan(const std::string& dir);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "runtime/base/printable.h"
@@ -122,12 +123,25 @@ void order_metrics(Benchmark& benchmark) {
   for (Task& task : benchmark.tasks) {
     for (int& m : task.metrics) m = now[static_cast<std::size_t>(m)];
   }
+  const auto truths = static_cast<std::size_t>(
+      std::count_if(benchmark.metrics.begin(), benchmark.metrics.end(),
+                    [](const Metric& metric) { return metric.truth; }));
+  const bool is_same = std::is_sorted(now.begin(), now.end());
   for (Episode& e : benchmark.episodes) {
-    std::vector<bool> truths;
-    for (std::size_t i = 0; i < e.truths.size(); ++i) {
-      if (e.truths[i]) set_true(truths, now[i]);
+    if (!is_same) {
+      Truths ordered;
+      for (std::size_t i = 0; i < now.size(); ++i) {
+        if (e.truths[i]) ordered.set(static_cast<std::size_t>(now[i]));
+      }
+      e.truths = std::move(ordered);
     }
-    e.truths = std::move(truths);
+    if (e.numbers.empty()) continue;
+    std::vector<double> numbers(now.size() - truths, std::nan(""));
+    for (std::size_t i = 0; i < e.numbers.size(); ++i) {
+      if (const auto at = static_cast<std::size_t>(now[i]); at >= truths)
+        numbers[at - truths] = e.numbers[i];
+    }
+    e.numbers = std::move(numbers);
   }
 }
 
@@ -188,12 +202,6 @@ void mark_pairing(const Benchmark& benchmark, Task& task) {
 }
 
 }  // namespace
-
-void set_true(std::vector<bool>& truths, int metric) {
-  const auto at = static_cast<std::size_t>(metric);
-  if (at >= truths.size()) truths.resize(at + 1);
-  truths[at] = true;
-}
 
 void arrange(Benchmark& benchmark, const JoinedPlans& plans, const std::vector<std::string>& sets) {
   label_policies(benchmark);

@@ -13,8 +13,6 @@ namespace probe::report {
 inline constexpr std::size_t kLongestText = 1000;  // of a name or reason of a folder, bytes
 inline constexpr std::size_t kNamed = 3;           // before the rest is only counted
 
-void set_true(std::vector<bool>& truths, int metric);
-
 // Once, when all folders are in. `sets`: LoadOptions::sets.
 void arrange(Benchmark& benchmark, const JoinedPlans& plans, const std::vector<std::string>& sets);
 

@@ -54,11 +54,10 @@ std::vector<int> Benchmark::all_tasks() const {
 }
 
 void index_episodes(Benchmark& benchmark) {
-  std::stable_sort(benchmark.episodes.begin(), benchmark.episodes.end(),
-                   [](const Episode& a, const Episode& b) {
-                     return std::tuple(a.policy, a.task, a.start, a.row.seed) <
-                            std::tuple(b.policy, b.task, b.start, b.row.seed);
-                   });
+  const auto key = [](const Episode& e) { return std::tuple(e.policy, e.task, e.start, e.seed); };
+  const auto before = [&](const Episode& a, const Episode& b) { return key(a) < key(b); };
+  if (!std::is_sorted(benchmark.episodes.begin(), benchmark.episodes.end(), before))
+    std::stable_sort(benchmark.episodes.begin(), benchmark.episodes.end(), before);
   const std::size_t cells = benchmark.policies.size() * benchmark.tasks.size();
   benchmark.first.assign(cells + 1, 0);
   for (const Episode& e : benchmark.episodes) {

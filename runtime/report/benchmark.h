@@ -2,6 +2,7 @@
 // used. Reads databases and plans, never traces.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -100,23 +101,55 @@ struct Policy {
   std::vector<RunInfo> runs;
 };
 
+// Which truths hold, by metric; those behind the last one that does are false. Most plans have few.
+class Truths {
+ public:
+  bool operator[](std::size_t metric) const {
+    if (metric < 64) return (low_ >> metric & 1) != 0;
+    const std::size_t word = metric / 64 - 1;
+    return word < high_.size() && (high_[word] >> metric % 64 & 1) != 0;
+  }
+  void set(std::size_t metric, bool truth = true) {
+    std::uint64_t* word = &low_;
+    if (metric >= 64) {
+      if (high_.size() < metric / 64) high_.resize(metric / 64);
+      word = &high_[metric / 64 - 1];
+    }
+    const std::uint64_t bit = std::uint64_t{1} << metric % 64;
+    *word = truth ? *word | bit : *word & ~bit;
+  }
+  std::size_t size() const { return 64 * (1 + high_.size()); }  // none at or behind it
+  bool any() const {
+    return low_ != 0 || std::any_of(high_.begin(), high_.end(), [](auto word) { return word != 0; });
+  }
+
+ private:
+  std::uint64_t low_ = 0;
+  std::vector<std::uint64_t> high_;
+};
+
+// Small, since there may be a million of them.
 struct Episode {
-  int policy = 0, task = 0, start = 0;
-  std::vector<bool> truths = {};  // metric i of the benchmark was true; those behind are false
-  int reason = kAbsent;           // of invalidity
-  int prompt = kAbsent;           // what the policy was sent, if its hash fits a known instruction
-  int plan = 0;                   // under which it was run
-  std::string video;              // path, or empty
-  store::ResultRow row;           // as stored
+  int policy = 0, task = 0, start = 0, seed = 0;
+  Truths truths = {};    // of the benchmark's metrics
+  int reason = kAbsent;  // of invalidity
+  int prompt = kAbsent;  // what the policy was sent, if its hash fits a known instruction
+  int plan = 0;          // under which it was run
+  int steps = 0;
+  int remark = kAbsent;              // of Benchmark::remarks
+  int row = kAbsent;                 // of Benchmark::rows, where it was kept
+  bool is_open = false;              // store::is_open
+  bool is_prompted = false;          // an instruction was sent
+  std::uint64_t picture = 0;         // of the first one's hash; 0: none was sent
+  std::uint64_t trace = 0;           // the first 48 bits of its trace's hash
+  std::vector<double> numbers = {};  // of the metrics that are no truths, in their order; NaN: none
+  std::string video = {};            // path, or empty
   // Episodes of several tasks with one number are one observation, which no sum counts twice; -1:
   // this one stands for itself.
   std::int64_t shared = -1;
 
   bool valid() const { return reason == kAbsent; }
-  bool is(int metric) const {
-    const auto at = static_cast<std::size_t>(metric);
-    return metric >= 0 && at < truths.size() && truths[at];
-  }
+  bool is(int metric) const { return metric >= 0 && truths[static_cast<std::size_t>(metric)]; }
 };
 
 struct Note {
@@ -134,8 +167,10 @@ struct Benchmark {
   std::vector<std::string> fingerprint_differences;
   std::vector<Policy> policies;
   std::vector<AskedModel> models;  // that were asked about tasks
-  std::vector<std::string> prompts, reasons;
+  std::vector<std::string> prompts, reasons, remarks;
   std::vector<Episode> episodes;  // ascending by policy, task, start, seed
+  // As stored: of all episodes, or of many some of each task, see LoadOptions::most_rows.
+  std::vector<store::ResultRow> rows;
   std::vector<Note> notes;
   std::vector<plan::Plan> plan_files;  // by plan
 
@@ -160,6 +195,9 @@ struct LoadOptions {
   std::vector<std::string> sets = {};  // columns of the tables; empty: the plan's finest sets
   bool join = true;                    // runs of one policy that do not overlap are one policy's
   bool prove = false;  // leave out, and name in a note, rows that their traces do not bear
+  // Of so many episodes all rows are kept as they are stored; of more, in each folder some of each
+  // task: those of its first failures and successes.
+  std::size_t most_rows = 100'000;
 };
 
 // Folders of runs, and of answers. Those that cannot be read are a failure that names the folder;

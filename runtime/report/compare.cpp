@@ -27,10 +27,10 @@ Shared shared_starts(const Benchmark& benchmark, int a, int b) {
   for (const int t : benchmark.all_tasks()) {
     std::set<std::pair<int, int>> ours, theirs;
     for (const Episode& e : benchmark.of(a, t)) {
-      if (e.valid()) ours.emplace(e.start, e.row.seed);
+      if (e.valid()) ours.emplace(e.start, e.seed);
     }
     for (const Episode& e : benchmark.of(b, t)) {
-      if (e.valid()) theirs.emplace(e.start, e.row.seed);
+      if (e.valid()) theirs.emplace(e.start, e.seed);
     }
     std::size_t common = 0;
     for (const auto& key : ours) common += theirs.contains(key) ? 1 : 0;

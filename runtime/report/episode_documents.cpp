@@ -104,7 +104,8 @@ std::vector<char> chosen_whys(std::span<const EpisodeTrace> episodes, std::size_
     });
   };
   for (std::size_t i = 0; i < episodes.size(); ++i) {
-    if (!episodes[i].row->invalid) groups[{episodes[i].task, episodes[i].row->policy}].push_back(i);
+    if (episodes[i].row != nullptr && !episodes[i].row->invalid)
+      groups[{episodes[i].task, episodes[i].row->policy}].push_back(i);
   }
   std::size_t rounds = 0;
   for (auto& [key, group] : groups) {
@@ -271,7 +272,7 @@ EpisodeDocuments episode_documents(std::span<const EpisodeTrace> episodes,
   const std::vector<char> explained = chosen_whys(episodes, options.explained);
   std::vector<Reading> readings(episodes.size());
   const auto work = [&](std::size_t i) -> Status {
-    if (!episodes[i].row->trace.empty())
+    if (episodes[i].row != nullptr && !episodes[i].row->trace.empty())
       readings[i] = read_episode(episodes[i], metrics, options.events, explained[i] != 0);
     return {};
   };

@@ -16,7 +16,7 @@ namespace probe::report {
 
 // One episode of the page's column arrays, in their order.
 struct EpisodeTrace {
-  const store::ResultRow* row = nullptr;
+  const store::ResultRow* row = nullptr;  // null: nothing is told of it
   const plan::Plan* plan = nullptr;  // the one the row was made under
   int task = 0;                      // index into the page's tasks
   // The same plan with metrics that tell of events behind its own; null: none are told.

@@ -18,7 +18,7 @@ int index_of(const std::vector<Metric>& metrics, const std::string& name) {
 void set(Benchmark& out, Episode& episode, const std::string& name, bool truth) {
   const int metric = index_of(out.metrics, name);
   if (metric == kAbsent) return;
-  episode.truths[static_cast<std::size_t>(metric)] = truth;
+  episode.truths.set(static_cast<std::size_t>(metric), truth);
   std::vector<int>& known = out.tasks[static_cast<std::size_t>(episode.task)].metrics;
   if (std::ranges::find(known, metric) == known.end()) known.push_back(metric);
 }
@@ -115,7 +115,7 @@ Benchmark benchmark_of_events(const Benchmark& benchmark, const ToldEvents& even
   out.first = benchmark.first;
   for (std::size_t i = 0; i < out.episodes.size(); ++i) {
     Episode& episode = out.episodes[i];
-    episode.truths.assign(out.metrics.size(), false);
+    episode.truths = {};
     const auto& told = events.told[i];
     if (!told || !told->untold.empty()) {
       if (episode.valid()) episode.reason = static_cast<int>(out.reasons.size()) - 1;
@@ -133,9 +133,8 @@ Benchmark benchmark_of_events(const Benchmark& benchmark, const ToldEvents& even
 Json events_json(const Benchmark& benchmark, const ToldEvents& events) {
   if (events.told.size() != benchmark.episodes.size()) return nullptr;
   const Benchmark made = benchmark_of_events(benchmark, events);
-  const bool has_any = std::ranges::any_of(made.episodes, [](const Episode& e) {
-    return e.valid() && std::ranges::find(e.truths, true) != e.truths.end();
-  });
+  const bool has_any = std::ranges::any_of(
+      made.episodes, [](const Episode& e) { return e.valid() && e.truths.any(); });
   if (!has_any) return nullptr;
   PageOptions options;
   options.models = false;

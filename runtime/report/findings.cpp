@@ -76,7 +76,7 @@ void add_gap(const Benchmark& benchmark, const Tables& tables, Json& found) {
 Json findings(const Benchmark& benchmark, const Tables& tables) {
   Json found = Json::array();
   std::size_t invalid = 0, floors = 0, ceilings = 0, confounded = 0, variants = 0;
-  for (const Episode& e : benchmark.episodes) invalid += store::is_open(e.row) ? 1 : 0;
+  for (const Episode& e : benchmark.episodes) invalid += e.is_open ? 1 : 0;
   if (invalid > 0) {
     found.push_back(finding(2 * invalid > benchmark.episodes.size() ? "bad" : "warn",
                             fmt::format("{} of {} episodes are invalid and count neither way",

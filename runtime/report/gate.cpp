@@ -43,9 +43,9 @@ Hidden hidden_in(const Benchmark& benchmark, int metric, bool lower_is_better,
   Hidden hidden;
   for (const int task : tasks) {
     std::map<Key, const Episode*> before;
-    for (const Episode& e : benchmark.of(kBefore, task)) before[{e.start, e.row.seed}] = &e;
+    for (const Episode& e : benchmark.of(kBefore, task)) before[{e.start, e.seed}] = &e;
     for (const Episode& now : benchmark.of(kNow, task)) {
-      const auto found = before.find({now.start, now.row.seed});
+      const auto found = before.find({now.start, now.seed});
       if (found == before.end() || (now.valid() && found->second->valid())) continue;
       const bool was = found->second->valid() ? found->second->is(metric) : !lower_is_better;
       const bool is = now.valid() ? now.is(metric) : lower_is_better;

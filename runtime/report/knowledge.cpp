@@ -254,9 +254,8 @@ Benchmark models_as_policies(const Benchmark& benchmark) {
       episode.task = tasks.at({known.task, metric});
       episode.start = known.start;
       episode.plan = model.plan;
-      episode.truths.assign(static_cast<std::size_t>(metric) + 1, false);
-      episode.truths.back() = known.knows;
-      episode.row.seed = pairing.number(plan_of(benchmark, model), known);
+      episode.truths.set(static_cast<std::size_t>(metric), known.knows);
+      episode.seed = pairing.number(plan_of(benchmark, model), known);
       episode.shared = known.shared;
       out.episodes.push_back(std::move(episode));
     }

@@ -2,12 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
 #include "runtime/ask/answers.h"
+#include "runtime/base/hash_number.h"
+#include "runtime/base/paths.h"
 #include "runtime/base/printable.h"
 #include "runtime/report/arrange.h"
 #include "runtime/run/delivery.h"
@@ -34,12 +40,32 @@ Role role_of(std::string_view policy) {
   return Role::kModel;
 }
 
+// Of many episodes so many failures, and as many successes, of a task are kept as they are stored.
+constexpr int kKept = 6;
+
+// Two pictures are equal where these numbers of their hashes are; 0 is for none.
+std::uint64_t picture_of(std::string_view hash) {
+  if (hash.empty()) return 0;
+  return std::max<std::uint64_t>(1, little_endian_number(sha256(hash)));
+}
+
+// The first 12 hexadecimal digits of a hash; 0 where it has none.
+std::uint64_t trace_of(std::string_view hash) {
+  std::uint64_t number = 0;
+  const std::string_view digits = hash.substr(0, 12);
+  const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), number, 16);
+  return read.ptr == digits.data() + 12 ? number : 0;
+}
+
 class FolderLoader {
+  using Key = std::tuple<int, int, int>;  // task, start, seed
+
  public:
   explicit FolderLoader(const LoadOptions& options) : options_(options) {}
 
   Result<Benchmark> load(std::span<const std::string> dirs) {
     if (dirs.empty()) return Failure{Fault::kUsage, "no results folder is named", "DIR"};
+    PROBE_TRY(count(dirs));
     std::set<std::string> seen;
     for (const std::string& dir : dirs) {
       std::error_code error;
@@ -67,12 +93,23 @@ class FolderLoader {
     return Failure{Fault::kUsage, "no episode has been run yet: there is nothing to report", names};
   }
 
+  // Whether all rows are kept. What cannot be counted is told of when it is read.
+  Status count(std::span<const std::string> dirs) {
+    std::size_t rows = 0;
+    for (const std::string& dir : dirs) {
+      if (ask::holds_answers(dir)) continue;
+      const auto here = store::count_rows(dir);
+      if (here) rows += *here;
+    }
+    keeps_all_ = rows <= options_.most_rows;
+    return {};
+  }
+
   Status add_folder(const std::string& dir) {
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
     if (record.identity.only_success)
       return Failure{Fault::kUsage, std::string(store::kSuccessesAlone), dir};
     RunInfo info;
-    PROBE_ASSIGN(std::vector<store::ResultRow> rows, rows_of(dir, &info.live));
     PROBE_ASSIGN(const int plan, plan_of(dir, record));
     info.dir = dir;
     info.plan = plan;
@@ -85,8 +122,7 @@ class FolderLoader {
         index_in(benchmark_.fingerprint_differences, line);
       }
     }
-    add_rows(dir, record, plan, std::move(rows), info);
-    return {};
+    return add_rows(dir, record, plan, info);
   }
 
   Status add_answers(const std::string& dir) {
@@ -111,11 +147,11 @@ class FolderLoader {
     return {};
   }
 
-  // `live`: of a run whose world does not wait, how its policy answered.
-  Result<std::vector<store::ResultRow>> rows_of(const std::string& dir, std::string* live) {
+  // The rows that count. `live`: of a run whose world does not wait, how its policy answered.
+  Status each_row(const std::string& dir, std::string* live, const store::RowVisitor& visit) {
     constexpr std::size_t kTold = 5;
-    if (!options_.prove) return store::read_results(dir);
-    PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
+    if (!options_.prove) return store::for_each_row(dir, visit);
+    PROBE_ASSIGN(const store::ProvenRun proven, store::for_each_proven_row(dir, visit));
     const auto& refused = proven.refused;
     for (std::size_t i = 0; i < refused.size() && i < kTold; ++i) {
       note("bad", printable(refused[i], kLongestText));
@@ -126,7 +162,7 @@ class FolderLoader {
                               refused.size() - kTold, dir));
     }
     if (!proven.live_terms.empty()) *live = to_text(proven.live);
-    return std::move(proven.rows);
+    return {};
   }
 
   // Opens the folder's plan, or finds the one with the same root.
@@ -141,54 +177,83 @@ class FolderLoader {
     return plans_.add(std::move(plan).value(), record.suite);
   }
 
-  void add_rows(const std::string& dir, const store::RunRecord& record, int plan,
-                std::vector<store::ResultRow> rows, RunInfo& info) {
+  Status add_rows(const std::string& dir, const store::RunRecord& record, int plan,
+                  RunInfo& info) {
     const plan::Plan& file = benchmark_.plan_files[static_cast<std::size_t>(plan)];
     const PlanTasks& map = plans_.map(plan);
-    note_delivery(dir, file, rows);
-    note_reading(dir, info);
+    run::Delivery delivery(file);
     std::vector<Episode> episodes;
-    std::set<int> tasks;
+    std::vector<char> has_task(benchmark_.tasks.size(), 0);
+    std::map<int, std::array<int, 2>> kept;  // failures and successes, by task
     std::size_t unknown = 0;
-    for (store::ResultRow& row : rows) {
-      const auto task = file.find_task(row.task);
+    std::string last;  // task
+    std::optional<std::uint32_t> task;
+    const bool has_videos = is_folder(dir + "/videos");
+    PROBE_TRY(each_row(dir, &info.live, [&](store::ResultRow&& row) -> Status {
+      delivery.add(row);
+      // A task's rows stand together.
+      if (row.task != last || last.empty()) task = file.find_task(last = row.task);
       if (!task || row.episode < 0 ||
           static_cast<std::size_t>(row.episode) >= map.start[*task].size()) {
         ++unknown;
-        continue;
+        return {};
       }
       Episode episode;
       episode.task = map.task[*task];
       episode.start = map.start[*task][static_cast<std::size_t>(row.episode)];
+      episode.seed = row.seed;
       episode.plan = plan;
+      episode.steps = row.steps;
+      episode.is_open = store::is_open(row);
+      episode.is_prompted = !row.prompt_sha256.empty();
+      episode.picture = picture_of(row.image_sha256);
+      episode.trace = trace_of(row.trace_sha256);
+      bool succeeded = false;
       if (row.invalid) {
-        episode.reason = index_in(benchmark_.reasons, printable(*row.invalid, kLongestText));
+        episode.reason = number_of(benchmark_.reasons, reasons_, printable(*row.invalid, kLongestText));
         info.not_attempted.add(row);
-        if (store::is_open(row)) ++info.invalid;
+        if (episode.is_open) ++info.invalid;
       } else {
         for (const store::MetricValue& value : row.metrics) {
-          const int m = plans_.metric(value.name, value.is_bool);
-          if (value.is_bool && value.value != 0) set_true(episode.truths, m);
+          const auto m = static_cast<std::size_t>(plans_.metric(value.name, value.is_bool));
+          if (!value.is_bool) {
+            if (episode.numbers.size() <= m) episode.numbers.resize(m + 1, std::nan(""));
+            episode.numbers[m] = value.value;
+          } else if (value.value != 0) {
+            episode.truths.set(m);
+            succeeded = succeeded || value.name == "success";
+          }
         }
       }
+      if (row.remark) episode.remark = number_of(benchmark_.remarks, remarks_, *row.remark);
       episode.prompt = prompt_of(row.sent_prompt_sha256.value_or(row.prompt_sha256));
-      const fs::path video =
-          fs::path(dir) / "videos" / row.task / fmt::format("{}-{}.mp4", row.episode, row.seed);
-      if (std::error_code ignored; fs::exists(video, ignored)) {
-        episode.video = video.string();
-        ++info.videos;
+      if (has_videos) {
+        std::string video =
+            fmt::format("{}/videos/{}/{}-{}.mp4", dir, row.task, row.episode, row.seed);
+        if (is_there(video)) {
+          episode.video = std::move(video);
+          ++info.videos;
+        }
       }
-      tasks.insert(episode.task);
-      episode.row = std::move(row);
+      has_task.resize(std::max(has_task.size(), benchmark_.tasks.size()), 0);
+      has_task[static_cast<std::size_t>(episode.task)] = 1;
+      if (keeps_all_ || (!row.invalid && kept[episode.task][succeeded ? 1 : 0]++ < kKept)) {
+        episode.row = static_cast<int>(benchmark_.rows.size());
+        benchmark_.rows.push_back(std::move(row));
+      }
       episodes.push_back(std::move(episode));
-    }
+      return {};
+    }));
+    const auto findings = delivery.findings();
+    note_delivery(dir, findings);
+    note_reading(dir, info);
     if (unknown > 0) {
       note("warn", fmt::format("{} rows of `{}` name tasks or starts that its plan does not have; "
                                "they are left out",
                                unknown, dir));
     }
     info.done = static_cast<int>(episodes.size());
-    info.tasks = static_cast<int>(tasks.size());
+    info.tasks = static_cast<int>(std::count(has_task.begin(), has_task.end(), 1));
     const PlanInfo& of_plan = benchmark_.plans[static_cast<std::size_t>(plan)];
     info.expected =
         of_plan.starts * static_cast<int>(std::max<std::size_t>(1, record.seeds.size()));
@@ -196,6 +261,15 @@ class FolderLoader {
     if (!record.identity.live.empty())
       name += " (" + printable(record.identity.live, kLongestText) + ")";
     place_run(name, std::move(info), std::move(episodes));
+    return {};
+  }
+
+  // Of a text in a list that has each once; `known` has their numbers.
+  static int number_of(std::vector<std::string>& list, std::map<std::string, int>& known,
+                       std::string text) {
+    const auto [at, is_new] = known.try_emplace(text, static_cast<int>(list.size()));
+    if (is_new) list.push_back(std::move(text));
+    return at->second;
   }
 
   int prompt_of(const std::string& hash) {
@@ -210,21 +284,22 @@ class FolderLoader {
 
   // Joins a run to a policy of its name whose episodes are others, as shards' are.
   void place_run(const std::string& name, RunInfo info, std::vector<Episode> episodes) {
-    using Key = std::tuple<int, int, int>;
-    std::set<Key> keys;
-    for (const Episode& e : episodes) keys.emplace(e.task, e.start, e.row.seed);
+    std::vector<Key> keys;
+    keys.reserve(episodes.size());
+    for (const Episode& e : episodes) keys.emplace_back(e.task, e.start, e.seed);
+    std::sort(keys.begin(), keys.end());
     std::size_t policy = options_.join ? 0 : benchmark_.policies.size();
     for (; policy < benchmark_.policies.size(); ++policy) {
-      if (benchmark_.policies[policy].name != name) continue;
-      const auto& held = held_[policy];
-      if (std::none_of(keys.begin(), keys.end(), [&](const Key& k) { return held.contains(k); }))
-        break;
+      if (benchmark_.policies[policy].name == name && !meets(held_[policy], keys)) break;
     }
     if (policy == benchmark_.policies.size()) {
       benchmark_.policies.push_back({name, name, role_of(name), {}});
       held_.emplace_back();
     }
-    held_[policy].insert(keys.begin(), keys.end());
+    const auto middle = static_cast<std::ptrdiff_t>(held_[policy].size());
+    held_[policy].insert(held_[policy].end(), keys.begin(), keys.end());
+    std::inplace_merge(held_[policy].begin(), held_[policy].begin() + middle, held_[policy].end());
+    benchmark_.episodes.reserve(benchmark_.episodes.size() + episodes.size());
     for (Episode& e : episodes) {
       e.policy = static_cast<int>(policy);
       benchmark_.episodes.push_back(std::move(e));
@@ -232,10 +307,16 @@ class FolderLoader {
     benchmark_.policies[policy].runs.push_back(std::move(info));
   }
 
+  static bool meets(const std::vector<Key>& a, const std::vector<Key>& b) {
+    for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+      if (*i == *j) return true;
+      *i < *j ? ++i : ++j;
+    }
+    return false;
+  }
+
   // What was meant to differ and reached the policy equal.
-  void note_delivery(const std::string& dir, const plan::Plan& plan,
-                     std::span<const store::ResultRow> rows) {
-    const auto findings = run::check_delivery(plan, rows);
+  void note_delivery(const std::string& dir, std::span<const run::DeliveryFinding> findings) {
     for (std::size_t i = 0; i < findings.size() && i < kNamed; ++i)
       note("bad", fmt::format("`{}`: {}", dir, findings[i].sentence));
     if (findings.size() > kNamed) {
@@ -257,11 +338,13 @@ class FolderLoader {
   }
 
   const LoadOptions& options_;
+  bool keeps_all_ = true;
   Benchmark benchmark_;
   JoinedPlans plans_{benchmark_};
+  std::map<std::string, int> reasons_, remarks_;
   std::map<std::string, int> prompt_hashes_;
   std::size_t hashed_ = 0;
-  std::vector<std::set<std::tuple<int, int, int>>> held_;  // by policy
+  std::vector<std::vector<Key>> held_;  // by policy, ascending
 };
 
 }  // namespace

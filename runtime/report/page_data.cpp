@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <set>
 
 #include "runtime/base/digit_groups.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
+#include "runtime/wire/base64.h"
 
 namespace probe::report {
 namespace {
@@ -106,49 +108,85 @@ std::uint64_t truth_bits(const Episode& episode, int first) {
 
 constexpr std::size_t kLongestRemark = 300;  // characters
 
-Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json& strings) {
-  Json columns = {{"count", benchmark.episodes.size()}};
-  for (const char* name :
-       {"policy", "task", "start", "seed", "bits", "steps", "reason", "prompt", "video", "sha"})
-    columns[name] = Json::array();
-  Json numbers = Json::object();
-  for (const Metric& metric : benchmark.metrics) {
-    if (!metric.truth) numbers[metric.name] = Json::array();
+using WholeColumn = std::vector<std::int64_t>;
+
+// What a page of many episodes has in place of a column, see PAGE_DATA.md: runs of equal values, or
+// bytes in base64.
+Json packed(const WholeColumn& column) {
+  WholeColumn runs;
+  std::int64_t low = 0, high = 0;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    const bool is_new = i == 0 || column[i] != column[i - 1];
+    if (is_new) runs.insert(runs.end(), {column[i], 0});
+    ++runs.back();
+    low = i == 0 ? column[i] : std::min(low, column[i]);
+    high = i == 0 ? column[i] : std::max(high, column[i]);
   }
+  if (8 * runs.size() <= column.size()) return {{"runs", runs}};
+  const std::int64_t span = high - low;
+  const int width = span < 256 ? 1 : span < 65536 ? 2 : 4;
+  if (span > UINT32_MAX) return column;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(column.size() * static_cast<std::size_t>(width));
+  for (const std::int64_t value : column) {
+    for (int i = 0; i < width; ++i)
+      bytes.push_back(static_cast<std::uint8_t>((value - low) >> 8 * i & 255));
+  }
+  return {{"from", low}, {"width", width}, {"bytes", wire::to_base64(bytes)}};
+}
+
+Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json& strings) {
+  const std::vector<Episode>& episodes = benchmark.episodes;
+  const bool packs = episodes.size() > options.plain;
+  Json columns = {{"count", episodes.size()}};
+  const auto column = [&](auto value) -> Json {
+    WholeColumn values;
+    values.reserve(episodes.size());
+    for (const Episode& e : episodes) values.push_back(static_cast<std::int64_t>(value(e)));
+    return packs ? packed(values) : Json(values);
+  };
+  columns["policy"] = column([](const Episode& e) { return e.policy; });
+  columns["task"] = column([](const Episode& e) { return e.task; });
+  columns["start"] = column([](const Episode& e) { return e.start; });
+  columns["seed"] = column([](const Episode& e) { return e.seed; });
+  columns["bits"] = column([](const Episode& e) { return truth_bits(e, 0); });
+  columns["steps"] = column([](const Episode& e) { return e.steps; });
+  columns["reason"] = column([](const Episode& e) { return e.reason; });
+  columns["prompt"] = column([](const Episode& e) { return e.prompt; });
+  columns["video"] = column([&](const Episode& e) {
+    if (e.video.empty()) return kAbsent;
+    strings.push_back(from(options.relative_to, e.video));
+    return static_cast<int>(strings.size()) - 1;
+  });
   Json remarks = Json::object();
-  Json more_bits = Json::array();
+  for (std::size_t i = 0; i < episodes.size(); ++i) {
+    if (episodes[i].remark == kAbsent) continue;
+    remarks[std::to_string(i)] = strings.size();
+    strings.push_back(printable(benchmark.remarks[static_cast<std::size_t>(episodes[i].remark)],
+                                kLongestRemark));
+  }
+  // The page asks for none of them.
+  if (!packs) {
+    Json hashes = Json::array();
+    for (const Episode& e : episodes)
+      hashes.push_back(e.trace == 0 ? std::string() : fmt::format("{:012x}", e.trace));
+    columns["sha"] = std::move(hashes);
+  }
   const auto truths = std::count_if(benchmark.metrics.begin(), benchmark.metrics.end(),
                                     [](const Metric& metric) { return metric.truth; });
+  Json more_bits = Json::array();
   for (std::ptrdiff_t first = kTruthsANumber; first < truths; first += kTruthsANumber)
-    more_bits.push_back(Json::array());
-  for (const Episode& e : benchmark.episodes) {
-    columns["policy"].push_back(e.policy);
-    columns["task"].push_back(e.task);
-    columns["start"].push_back(e.start);
-    columns["seed"].push_back(e.row.seed);
-    columns["bits"].push_back(truth_bits(e, 0));
-    for (std::size_t i = 0; i < more_bits.size(); ++i)
-      more_bits[i].push_back(truth_bits(e, static_cast<int>(i + 1) * kTruthsANumber));
-    columns["steps"].push_back(e.row.steps);
-    columns["reason"].push_back(e.reason);
-    columns["prompt"].push_back(e.prompt);
-    if (e.video.empty()) {
-      columns["video"].push_back(kAbsent);
-    } else {
-      columns["video"].push_back(strings.size());
-      strings.push_back(from(options.relative_to, e.video));
+    more_bits.push_back(
+        column([&](const Episode& e) { return truth_bits(e, static_cast<int>(first)); }));
+  Json numbers = Json::object();
+  for (std::size_t m = static_cast<std::size_t>(truths); m < benchmark.metrics.size(); ++m) {
+    const std::size_t at = m - static_cast<std::size_t>(truths);
+    Json values = Json::array();
+    for (const Episode& e : episodes) {
+      const bool known = e.valid() && at < e.numbers.size() && std::isfinite(e.numbers[at]);
+      values.push_back(known ? Json(rounded(e.numbers[at])) : Json());
     }
-    if (e.row.remark) {
-      remarks[std::to_string(columns["sha"].size())] = strings.size();
-      strings.push_back(printable(*e.row.remark, kLongestRemark));
-    }
-    columns["sha"].push_back(e.row.trace_sha256.substr(0, 12));
-    for (auto& [key, values] : numbers.items()) {
-      const std::string& name = key;
-      const auto at = std::ranges::find(e.row.metrics, name, &store::MetricValue::name);
-      const bool known = e.valid() && at != e.row.metrics.end() && std::isfinite(at->value);
-      values.push_back(known ? Json(rounded(at->value)) : Json());
-    }
+    numbers[benchmark.metrics[m].name] = std::move(values);
   }
   if (!more_bits.empty()) columns["more_bits"] = std::move(more_bits);
   if (!remarks.empty()) columns["remarks"] = std::move(remarks);

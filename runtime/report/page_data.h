@@ -1,6 +1,7 @@
 // The document `data` of the report page, as PAGE_DATA.md describes it.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct PageOptions {
   std::string relative_to = {};  // folder of the page; dirs and videos are written from it
   std::vector<PublishedTable> published = {};  // other people's numbers
   bool models = true;                          // mixed models, which take seconds
+  std::size_t plain = SIZE_MAX;                // episodes whose columns are arrays; more are packed
   Json events = nullptr;                       // of events_json(), or none
 };
 

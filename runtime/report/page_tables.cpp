@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <unordered_map>
 
 #include "runtime/base/file.h"
 #include "runtime/report/categories.h"
@@ -103,14 +104,14 @@ Json delivery_json(const Benchmark& benchmark) {
     std::size_t sent = 0, own = 0;
     std::string first;
     for (const Episode& e : benchmark.episodes) {
-      if (e.policy != static_cast<int>(p) || e.row.prompt_sha256.empty()) continue;
+      if (e.policy != static_cast<int>(p) || !e.is_prompted) continue;
       ++sent;
       const Task& task = benchmark.tasks[static_cast<std::size_t>(e.task)];
       const bool same = e.prompt != kAbsent &&
                         benchmark.prompts[static_cast<std::size_t>(e.prompt)] == task.prompt;
       own += same ? 1 : 0;
       if (!same && first.empty())
-        first = fmt::format("{} start {} seed {}", task.name, e.start, e.row.seed);
+        first = fmt::format("{} start {} seed {}", task.name, e.start, e.seed);
     }
     const std::string& label = benchmark.policies[p].label;
     if (sent > 0 && own == sent) {
@@ -156,13 +157,14 @@ Json delivery_json(const Benchmark& benchmark) {
       }
     }
   }
-  std::map<std::pair<int, int>, std::string> pictures;
+  std::unordered_map<std::int64_t, std::uint64_t> pictures;  // by task and start
   std::size_t same = 0, other = 0;
   for (const Episode& e : benchmark.episodes) {
-    if (e.row.image_sha256.empty()) continue;
-    const auto [at, fresh] = pictures.try_emplace({e.task, e.start}, e.row.image_sha256);
+    if (e.picture == 0) continue;
+    const std::int64_t place = std::int64_t{e.task} << 32 | e.start;
+    const auto [at, fresh] = pictures.try_emplace(place, e.picture);
     if (fresh) continue;
-    ++(at->second == e.row.image_sha256 ? same : other);
+    ++(at->second == e.picture ? same : other);
   }
   if (same + other > 0) {
     rows.push_back(

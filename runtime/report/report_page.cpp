@@ -48,7 +48,8 @@ EpisodeDocuments read_traces(const Benchmark& benchmark, const EventPlans& event
   episodes.reserve(benchmark.episodes.size());
   for (const Episode& e : benchmark.episodes) {
     const auto plan = static_cast<std::size_t>(e.plan);
-    episodes.push_back({.row = &e.row,
+    episodes.push_back({.row = e.row == kAbsent ? nullptr
+                                                  : &benchmark.rows[static_cast<std::size_t>(e.row)],
                         .plan = &benchmark.plan_files[plan],
                         .task = e.task,
                         .events = events.plans.empty() ? nullptr : &events.plans[plan]});
@@ -85,10 +86,18 @@ Result<LoadedReport> load_report(const ReportRequest& request) {
 
 EpisodeDocuments read_episodes(LoadedReport& report, const ReportRequest& request) {
   EventPlans events;
-  if (request.traces) events = event_plans(report.benchmark);
+  const bool has_all = std::ranges::none_of(
+      report.benchmark.episodes, [](const Episode& e) { return e.row == kAbsent; });
+  if (request.traces && has_all) events = event_plans(report.benchmark);
+  // Sums of some, failures first, would say nothing of all.
+  if (request.traces && !has_all)
+    events.note =
+        "of so many episodes timelines and reasons are of some failures and successes of each task "
+        "alone, and no events are told; `vlaprobe why` and `results --events` tell of any";
   if (!events.note.empty())
     report.benchmark.notes.push_back({.level = "note", .text = events.note});
   EpisodeDocuments episodes = read_traces(report.benchmark, events, request);
+  if (!has_all) return episodes;
   report.options.events =
       events_json(report.benchmark, {events.metrics, std::move(episodes.events)});
   return episodes;
@@ -97,6 +106,7 @@ EpisodeDocuments read_episodes(LoadedReport& report, const ReportRequest& reques
 std::string page_text(LoadedReport& report, EpisodeDocuments episodes) {
   for (std::string& note : episodes.notes)
     report.benchmark.notes.push_back({.level = "warn", .text = std::move(note)});
+  report.options.plain = 50'000;
   return write_page({.data = page_data(report.benchmark, report.tables, report.options).dump(),
                      .timelines = std::move(episodes.timelines),
                      .whys = std::move(episodes.whys)});

@@ -77,8 +77,8 @@ template <typename Visit>
 void for_each_pair(std::span<const Episode> a, std::span<const Episode> b, Visit&& visit) {
   std::size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
-    const auto left = std::pair(a[i].start, a[i].row.seed);
-    const auto right = std::pair(b[j].start, b[j].row.seed);
+    const auto left = std::pair(a[i].start, a[i].seed);
+    const auto right = std::pair(b[j].start, b[j].seed);
     if (left < right) {
       ++i;
     } else if (right < left) {

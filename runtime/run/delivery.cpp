@@ -1,8 +1,10 @@
 #include "runtime/run/delivery.h"
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "runtime/base/json.h"
 #include "runtime/plan/axes.h"
@@ -53,24 +55,39 @@ const char* delivery_word(DeliveryFinding::Kind kind) {
   return "nothing";
 }
 
-class Detector {
+}  // namespace
+
+class Delivery::Detector {
  public:
-  Detector(const plan::Plan& plan, std::span<const store::ResultRow> rows) : plan_(plan) {
-    std::map<std::string_view, std::uint32_t> tasks;
+  explicit Detector(const plan::Plan& plan) : plan_(plan) {
     for (std::uint32_t i = 0; i < plan.tasks().size(); ++i) {
-      tasks.emplace(plan.text(plan.tasks()[i].name), i);
+      const plan::TaskRecord& record = plan.tasks()[i];
+      tasks_.emplace(plan.text(record.name), i);
+      if (record.baseline == plan::kNone || visible_axes(record.axes).empty()) continue;
+      shown_.insert({i, record.baseline});
     }
-    for (const store::ResultRow& row : rows) {
-      const auto found = tasks.find(row.task);
-      if (found == tasks.end()) continue;
-      ++(store::is_not_attempted(row) ? not_attempted_ : row.invalid ? invalid_ : valid_);
-      // Before the first request nothing was sent, and a row without a picture never got so far.
-      if (row.image_sha256.empty()) continue;
-      rows_[found->second].push_back(&row);
+  }
+
+  void add(const store::ResultRow& row) {
+    const auto found = tasks_.find(row.task);
+    if (found == tasks_.end()) return;
+    ++(store::is_not_attempted(row) ? not_attempted_ : row.invalid ? invalid_ : valid_);
+    // Before the first request nothing was sent, and a row without a picture never got so far.
+    if (row.image_sha256.empty()) return;
+    Sent& sent = sent_[found->second];
+    ++sent.rows;
+    sent.prompts.insert(prompt_of(row));
+    // Pictures are compared of few tasks.
+    if (shown_.contains(found->second)) {
+      sent.pictures.push_back({{row.episode, row.seed},
+                               texts_.emplace(row.start_id, texts_.size()).first->second,
+                               texts_.emplace(picture_of(row), texts_.size()).first->second});
     }
   }
 
   std::vector<DeliveryFinding> find() {
+    findings_.clear();
+    first_with_.clear();
     if (valid_ == 0) {
       std::string counts;
       if (invalid_ > 0) counts += ", " + count_of(invalid_, "episode") + " invalid";
@@ -79,55 +96,65 @@ class Detector {
       add({DeliveryFinding::Kind::kNothing, "", "", "", 0, invalid_,
            "no episode is valid" + counts + ": what reached the policy cannot be said"});
     }
-    for (const auto& [task, rows] : rows_) {
-      check_prompt(task, rows);
-      check_pictures(task, rows);
+    for (const auto& [task, sent] : sent_) {
+      check_prompt(task, sent);
+      check_pictures(task, sent);
     }
     return std::move(findings_);
   }
 
  private:
+  // Of an episode, texts by their numbers.
+  struct Picture {
+    std::pair<int, int> key;  // episode, seed
+    std::size_t start = 0, picture = 0;
+    bool operator<(const Picture& other) const { return key < other.key; }
+  };
+  // Of a task.
+  struct Sent {
+    std::set<std::string> prompts;
+    int rows = 0;
+    std::vector<Picture> pictures;
+  };
+
   std::string_view name(std::uint32_t task) const { return plan_.text(plan_.tasks()[task].name); }
   std::string_view prompt(std::uint32_t task) const {
     return plan_.text(plan_.tasks()[task].prompt);
   }
 
-  void check_prompt(std::uint32_t task, const std::vector<const store::ResultRow*>& rows) {
-    std::set<std::string_view> sent;
-    for (const store::ResultRow* row : rows) sent.insert(prompt_of(*row));
-    if (sent.size() > 1) {
+  void check_prompt(std::uint32_t task, const Sent& sent) {
+    if (sent.prompts.size() > 1) {
       add({DeliveryFinding::Kind::kManyPrompts, std::string(name(task)), "", "",
-           static_cast<int>(sent.size()), static_cast<int>(rows.size()),
+           static_cast<int>(sent.prompts.size()), sent.rows,
            "task " + quoted(name(task)) + ": its one instruction reached the policy as " +
-               std::to_string(sent.size()) + " different texts"});
+               std::to_string(sent.prompts.size()) + " different texts"});
     }
-    for (const std::string_view text : sent) {
+    for (const std::string& text : sent.prompts) {
       // Each text is compared with the first task that sent it, so a hundred tasks that send the
       // same are a hundred findings and not five thousand.
       const auto [first, is_first] = first_with_.emplace(text, task);
       if (is_first || prompt(first->second) == prompt(task)) continue;
-      const auto count = static_cast<int>(rows.size());
       add({DeliveryFinding::Kind::kSamePrompt, std::string(name(task)),
-           std::string(name(first->second)), "", count, count,
+           std::string(name(first->second)), "", sent.rows, sent.rows,
            "tasks " + quoted(name(task)) + " and " + quoted(name(first->second)) +
                " have different instructions (\"" + std::string(prompt(task)) + "\", \"" +
                std::string(prompt(first->second)) + "\"), but the policy was sent the same text"});
     }
   }
 
-  void check_pictures(std::uint32_t task, const std::vector<const store::ResultRow*>& rows) {
+  void check_pictures(std::uint32_t task, const Sent& sent) {
     const plan::TaskRecord& record = plan_.tasks()[task];
     const std::string axes = visible_axes(record.axes);
-    const auto baseline = rows_.find(record.baseline);
-    if (axes.empty() || baseline == rows_.end()) return;
-    std::map<std::pair<int, int>, const store::ResultRow*> others;
-    for (const store::ResultRow* row : baseline->second) others[{row->episode, row->seed}] = row;
+    const auto baseline = sent_.find(record.baseline);
+    if (axes.empty() || baseline == sent_.end()) return;
+    std::vector<Picture> others = baseline->second.pictures;
+    std::sort(others.begin(), others.end());
     int compared = 0, same = 0;
-    for (const store::ResultRow* row : rows) {
-      const auto other = others.find({row->episode, row->seed});
-      if (other == others.end() || other->second->start_id == row->start_id) continue;
+    for (const Picture& one : sent.pictures) {
+      const auto other = std::lower_bound(others.begin(), others.end(), one);
+      if (other == others.end() || other->key != one.key || other->start == one.start) continue;
       ++compared;
-      if (picture_of(*other->second) == picture_of(*row)) ++same;
+      if (other->picture == one.picture) ++same;
     }
     if (same == 0) return;
     add({DeliveryFinding::Kind::kSamePicture, std::string(name(task)),
@@ -141,17 +168,26 @@ class Detector {
   void add(DeliveryFinding finding) { findings_.push_back(std::move(finding)); }
 
   const plan::Plan& plan_;
+  std::map<std::string, std::uint32_t, std::less<>> tasks_;
+  std::set<std::uint32_t> shown_;  // whose pictures are compared
   int valid_ = 0, invalid_ = 0, not_attempted_ = 0;
-  std::map<std::uint32_t, std::vector<const store::ResultRow*>> rows_;  // by task
+  std::map<std::uint32_t, Sent> sent_;                  // by task
+  std::unordered_map<std::string, std::size_t> texts_;  // with their numbers
   std::map<std::string_view, std::uint32_t> first_with_;  // a sent text: its first task
   std::vector<DeliveryFinding> findings_;
 };
 
-}  // namespace
+Delivery::Delivery(const plan::Plan& plan) : detector_(std::make_unique<Detector>(plan)) {}
+Delivery::~Delivery() = default;
+Delivery::Delivery(Delivery&&) noexcept = default;
+void Delivery::add(const store::ResultRow& row) { detector_->add(row); }
+std::vector<DeliveryFinding> Delivery::findings() const { return detector_->find(); }
 
 std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
                                             std::span<const store::ResultRow> rows) {
-  return Detector(plan, rows).find();
+  Delivery delivery(plan);
+  for (const store::ResultRow& row : rows) delivery.add(row);
+  return delivery.findings();
 }
 
 std::string to_json(std::span<const DeliveryFinding> findings) {

@@ -2,6 +2,7 @@
 // sent, as their hashes in the rows have it, against what the plan says should differ.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,6 +30,20 @@ struct DeliveryFinding {
   int compared = 0;         // that could
   std::string sentence;     // for people
   bool operator==(const DeliveryFinding&) const = default;
+};
+
+// The same of rows that are not all there at once.
+class Delivery {
+ public:
+  explicit Delivery(const plan::Plan& plan);  // which must live as long
+  ~Delivery();
+  Delivery(Delivery&&) noexcept;
+  void add(const store::ResultRow& row);
+  std::vector<DeliveryFinding> findings() const;
+
+ private:
+  class Detector;
+  std::unique_ptr<Detector> detector_;
 };
 
 // Of rows of one run of `plan`; tasks that the plan does not have are passed over. A policy in this

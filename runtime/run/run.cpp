@@ -19,6 +19,7 @@
 #include "runtime/run/workers.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/robot_of.h"
+#include "runtime/store/chosen.h"
 #include "runtime/store/callers_policy.h"
 #include "runtime/store/fingerprint.h"
 #include "runtime/store/not_attempted.h"
@@ -316,6 +317,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   options.name = record.identity.policy;
   PROBE_ASSIGN(auto store, store::Store::open(options.out, record, plan.bytes()));
   summary.out = options.out;
+  store::write_chosen(options.out, summary.total);
   const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "runtime/base/cache_folder.h"
 #include "runtime/base/file.h"
 #include "runtime/scene/mesh_bytes.h"
 #include "runtime/scene/mesh_references.h"
@@ -90,23 +91,9 @@ std::string name_in(const std::string& folder, const Sha256& key) {
   return (fs::path(folder) / (to_hex(key) + ".mesh")).string();
 }
 
-std::string text_of(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value == nullptr ? "" : value;
-}
-
 }  // namespace
 
-std::string default_mesh_cache() {
-  const char* chosen = std::getenv("VLAPROBE_CACHE");
-  if (chosen != nullptr) return *chosen == '\0' ? "" : (fs::path(chosen) / "meshes").string();
-  const std::string xdg = text_of("XDG_CACHE_HOME");  // relative ones are to be ignored
-  if (!xdg.empty() && fs::path(xdg).is_absolute()) {
-    return (fs::path(xdg) / "vlaprobe" / "meshes").string();
-  }
-  const std::string home = text_of("HOME");
-  return home.empty() ? "" : (fs::path(home) / ".cache" / "vlaprobe" / "meshes").string();
-}
+std::string default_mesh_cache() { return cache_folder("meshes"); }
 
 Result<std::string> MeshCache::file_of(const std::string& path, const Vec3& scale,
                                        const MeshLimits& limits) const {

@@ -13,8 +13,7 @@
 
 namespace probe::scene {
 
-// Where meshes are kept: $VLAPROBE_CACHE, else $XDG_CACHE_HOME/vlaprobe, else ~/.cache/vlaprobe,
-// and in it `meshes`. Empty (no cache) if VLAPROBE_CACHE is set to nothing or there is no home.
+// Where meshes are kept, see cache_folder(); empty: nowhere.
 std::string default_mesh_cache();
 
 class MeshCache {

@@ -74,7 +74,10 @@ double ExactSum::tail(std::int64_t observed) const {
                                  : sum.at_least_by_inversion(least);
   };
   const std::int64_t far = std::abs(observed);
-  return std::min(1.0, at_least(*this, far) + at_least(mirrored(), far));
+  const ExactSum other = mirrored();
+  // Flipped signs are their own mirror image.
+  if (other.times_ == times_) return std::min(1.0, 2 * at_least(*this, far));
+  return std::min(1.0, at_least(*this, far) + at_least(other, far));
 }
 
 double ExactSum::at_least_by_counting(std::int64_t least) const {
@@ -130,16 +133,36 @@ double ExactSum::at_least_by_inversion(std::int64_t least) const {
   struct Group {
     std::vector<double> value, chance;
     double times = 0;
+    // Of two values: |phi|^2 = squares + twice cos(w apart).
+    double apart = 0, squares = 0, twice = 0;
   };
   std::vector<Group> groups;
   for (const auto& [values, times] : times_) {
     Group group{{}, tilted(values, tilt).chance, static_cast<double>(times)};
     for (const std::int64_t v : values) group.value.push_back(static_cast<double>(v));
+    if (values.size() == 2) {
+      const double p = group.chance[0], q = group.chance[1];
+      group.apart = group.value[1] - group.value[0];
+      group.squares = p * p + q * q;
+      group.twice = 2 * p * q;
+    }
     groups.push_back(std::move(group));
   }
+  // Most terms are nothing, which costs a cosine a group to see and not five functions.
+  const auto is_nothing = [&](double w) {
+    double size = 0;
+    for (const Group& group : groups) {
+      if (group.apart == 0) continue;
+      const double square = group.squares + group.twice * std::cos(w * group.apart);
+      size += 0.5 * group.times * std::log(std::max(square, 1e-300));
+      if (size < kNoSize - 1) return true;
+    }
+    return false;
+  };
   double total = 0;
   for (std::int64_t j = 0; 2 * j <= period; ++j) {
     const double w = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(period);
+    if (is_nothing(w)) continue;
     double size = 0, angle = -w * target;  // logarithm and argument of the term
     for (const Group& group : groups) {
       std::complex<double> phi = 0;

@@ -143,6 +143,13 @@ Statement& Statement::bind(const std::optional<std::string>& value) {
   return value ? bind(*value) : bind_null();
 }
 
+void Statement::restart() {
+  if (statement_ == nullptr) return;
+  sqlite3_reset(statement_);
+  code_ = SQLITE_OK;
+  bound_ = 0;
+}
+
 bool Statement::next() {
   if (code_ == SQLITE_OK || code_ == SQLITE_ROW) code_ = sqlite3_step(statement_);
   return code_ == SQLITE_ROW;

@@ -71,6 +71,8 @@ class Statement {
   Statement& bind_null();
   Statement& bind(const std::optional<std::string>& value);
 
+  // From the beginning, with values bound anew.
+  void restart();
   // True while there is a row.
   bool next();
   std::string text(int column) const;

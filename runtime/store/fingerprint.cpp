@@ -73,6 +73,19 @@ int visit_object(dl_phdr_info* info, std::size_t, void* data) {
   return 0;
 }
 
+// Keeps the build id of the object in which own_build_id() lies.
+int visit_own(dl_phdr_info* info, std::size_t, void* data) {
+  const auto at = reinterpret_cast<ElfW(Addr)>(&own_build_id);
+  for (int i = 0; i < info->dlpi_phnum; ++i) {
+    const auto& segment = info->dlpi_phdr[i];
+    const ElfW(Addr) begin = info->dlpi_addr + segment.p_vaddr;
+    if (segment.p_type != PT_LOAD || at < begin || at >= begin + segment.p_memsz) continue;
+    *static_cast<std::string*>(data) = build_id(*info);
+    return 1;
+  }
+  return 0;
+}
+
 std::string program_hash() {
   const auto bytes = read_file("/proc/self/exe");
   return to_hex(sha256(bytes ? *bytes : std::string()));
@@ -114,6 +127,12 @@ Fingerprint take_fingerprint(const Sha256& assets) {
   entries["cpu"] = cpu_family();
   entries["assets"] = to_hex(assets);
   return {{entries.begin(), entries.end()}};
+}
+
+std::string own_build_id() {
+  std::string id;
+  dl_iterate_phdr(visit_own, &id);
+  return id;
 }
 
 std::string to_json(const Fingerprint& fingerprint) {

@@ -21,6 +21,9 @@ struct Fingerprint {
 // Of this process and machine. `assets` is asset_digest().
 Fingerprint take_fingerprint(const Sha256& assets);
 
+// Of the program or library that this code is in, hexadecimal; empty: it has none.
+std::string own_build_id();
+
 std::string to_json(const Fingerprint& fingerprint);
 Result<Fingerprint> fingerprint_from_json(std::string_view text);
 

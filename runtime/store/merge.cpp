@@ -23,15 +23,17 @@ struct Source {
   RunRecord record;
   std::vector<Fingerprint> builds;  // of the folder's first call and of all that are known
   std::vector<RunCall> calls;
-  std::vector<ResultRow> rows;
   std::set<EpisodeKey> unproven;
 };
 
-// The best row of an episode so far.
+// Where the best row of an episode so far is. Rows themselves are read once more when they are
+// taken over: those of a million episodes need not be there at once.
 struct Chosen {
-  ResultRow row;
   const Source* source = nullptr;
+  bool is_valid = false;
+  std::string trace;  // its hash
 };
+using AllChosen = std::map<EpisodeKey, Chosen>;
 
 std::string text_of(const ResultRow& row) { return to_text(key_of(row)); }
 
@@ -44,7 +46,6 @@ Result<Source> read_source(const std::string& dir) {
   source.builds.push_back(source.record.fingerprint);
   PROBE_ASSIGN(source.calls, read_run_calls(dir));
   for (const RunCall& call : source.calls) source.builds.push_back(call.fingerprint);
-  PROBE_ASSIGN(source.rows, read_results(dir));
   PROBE_ASSIGN(const auto unproven, read_unproven(dir));
   source.unproven.insert(unproven.begin(), unproven.end());
   return source;
@@ -133,65 +134,79 @@ Status take_calls(const std::vector<Source>& sources, Store& store, const std::s
   return {};
 }
 
-bool is_proven(const plan::Plan& plan, const ResultRow& row, std::vector<std::string>& notes) {
-  const auto trace = prove(plan, row);
-  if (trace) return true;
-  notes.push_back(text_of(row) + " is left out: " + to_text(trace.failure()));
-  return false;
+Status choose(const Source& source, const ResultRow& row, AllChosen& chosen,
+              MergeSummary& summary) {
+  const Chosen here{&source, !row.invalid, row.trace_sha256};
+  const auto [at, is_new] = chosen.try_emplace(key_of(row), here);
+  if (is_new) return {};
+  Chosen& best = at->second;
+  ++summary.duplicates;
+  if (row.invalid) return {};
+  if (!best.is_valid) best = here;
+  if (best.trace == here.trace) return {};
+  return Failure{Fault::kStore,
+                 text_of(row) + " has the trace " + here.trace.substr(0, 12) + " here and " +
+                     best.trace.substr(0, 12) + " in " + best.source->dir + "; nothing was merged",
+                 source.dir};
 }
 
-Status choose_rows(const plan::Plan& plan, const std::vector<Source>& sources,
-                   std::map<EpisodeKey, Chosen>& chosen, MergeSummary& summary) {
+Status choose_rows(const std::vector<Source>& sources, AllChosen& chosen, MergeSummary& summary) {
   for (const Source& source : sources) {
-    for (const ResultRow& row : source.rows) {
-      if (!is_proven(plan, row, summary.notes)) {
-        ++summary.left_out;
-        continue;
-      }
-      const auto [at, is_new] = chosen.try_emplace(key_of(row), Chosen{row, &source});
-      if (is_new) continue;
-      Chosen& best = at->second;
-      ++summary.duplicates;
-      if (row.invalid) continue;
-      if (best.row.invalid) {
-        best = {row, &source};
-        continue;
-      }
-      if (best.row.trace_sha256 == row.trace_sha256) continue;
-      return Failure{Fault::kStore,
-                     text_of(row) + " has the trace " + row.trace_sha256.substr(0, 12) +
-                         " here and " + best.row.trace_sha256.substr(0, 12) + " in " +
-                         best.source->dir + "; nothing was merged",
-                     source.dir};
-    }
+    PROBE_ASSIGN(const ProvenRun proven, for_each_proven_row(source.dir, [&](ResultRow&& row) {
+      return choose(source, row, chosen, summary);
+    }));
+    summary.left_out += static_cast<int>(proven.refused.size());
+    summary.notes.insert(summary.notes.end(), proven.refused.begin(), proven.refused.end());
   }
   return {};
 }
 
-Status copy(const std::string& from, const std::string& to) {
-  if (auto copied = copy_to_disk(from, to); !copied) {
-    return Failure{Fault::kStore, "cannot be copied to " + to + ": " + to_text(copied.failure()),
-                   from};
-  }
-  return {};
+Failure not_copied(const Failure& failure, const std::string& from, const std::string& to) {
+  return {Fault::kStore, "cannot be copied to " + to + ": " + to_text(failure), from};
 }
 
 Status copy_video(const std::string& from, const std::string& to) {
   PROBE_TRY(make_lasting_folders(fs::path(to).parent_path().string()));
   PendingFile pending(to);
-  PROBE_TRY(copy(from, pending.temporary()));
+  if (auto copied = copy_to_disk(from, pending.temporary()); !copied)
+    return not_copied(copied.failure(), from, to);
   return pending.keep();
 }
 
-// The trace first, to the disk, then the row; a video goes along.
-Status take_over(const Chosen& chosen, Store& store, const std::string& out, int task_order) {
-  const EpisodeKey key = key_of(chosen.row);
-  PROBE_ASSIGN(const std::string temporary, store.temporary_trace(key));
-  PROBE_TRY(copy(chosen.row.trace, temporary));
-  const std::string video = video_path(chosen.source->dir, key);
-  if (is_file(video)) PROBE_TRY(copy_video(video, video_path(out, key)));
-  return store.commit(chosen.row, task_order);
-}
+// Takes rows over some hundred at a time: the disk is waited for once for all of them. Traces come
+// first, then the rows; a video goes along.
+class Taker {
+ public:
+  Taker(Store& store, const std::string& out) : store_(store), out_(out) {}
+
+  Status add(const Source& source, ResultRow&& row, int task_order) {
+    constexpr std::size_t kAtOnce = 1024;
+    const EpisodeKey key = key_of(row);
+    PROBE_ASSIGN(const std::string temporary, store_.temporary_trace(key));
+    if (auto copied = copy_bytes(row.trace, temporary); !copied)
+      return not_copied(copied.failure(), row.trace, temporary);
+    const std::string video = video_path(source.dir, key);
+    if (is_file(video)) PROBE_TRY(copy_video(video, video_path(out_, key)));
+    if (source.unproven.contains(key)) doubted_.push_back(key);
+    finished_.push_back({std::move(row), task_order});
+    return finished_.size() < kAtOnce ? Status() : end();
+  }
+
+  Status end() {
+    if (finished_.empty()) return {};
+    PROBE_TRY(store_.doubt(doubted_));
+    PROBE_TRY(store_.commit(finished_));
+    finished_.clear();
+    doubted_.clear();
+    return {};
+  }
+
+ private:
+  Store& store_;
+  const std::string& out_;
+  std::vector<Store::Finished> finished_;
+  std::vector<EpisodeKey> doubted_;
+};
 
 std::vector<std::string> folders_of(const MergeOptions& options, bool with_out) {
   std::vector<std::string> folders;
@@ -220,12 +235,12 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   }
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
   PROBE_TRY(check_same_meaning(sources, options.mixed_builds, summary.notes));
-  std::map<EpisodeKey, Chosen> chosen;
+  AllChosen chosen;
   for (const Source& source : sources) {
     if (auto own = open_run_plan(source.dir); !own) return own.failure();
   }
   PROBE_ASSIGN(const plan::Plan plan, open_run_plan(sources.front().dir));
-  PROBE_TRY(choose_rows(plan, sources, chosen, summary));
+  PROBE_TRY(choose_rows(sources, chosen, summary));
   if (chosen.empty() && summary.left_out > 0) {
     return Failure{Fault::kStore,
                    "no row of these folders is shown by its trace: " + summary.notes.back(),
@@ -244,20 +259,27 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   record.seeds.assign(seeds.begin(), seeds.end());
   PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
   PROBE_TRY(take_calls(sources, *store, options.out));
-  for (const auto& [key, best] : chosen) {
-    ++summary.rows;
-    summary.not_attempted.add(best.row);
-    if (is_open(best.row)) ++summary.invalid;
-    if (there && best.source == &sources.front()) continue;
-    const auto task = plan.find_task(best.row.task);
-    if (!task) {
-      return Failure{Fault::kStore, "its plan has no task `" + best.row.task + "`",
-                     best.source->dir};
-    }
-    if (best.source->unproven.contains(key)) PROBE_TRY(store->doubt({key}));
-    PROBE_TRY(take_over(best, *store, options.out, static_cast<int>(*task)));
-    ++summary.added;
+  Taker taker(*store, options.out);
+  for (const Source& source : sources) {
+    PROBE_TRY(for_each_row(source.dir, [&](ResultRow&& row) -> Status {
+      const auto best = chosen.find(key_of(row));
+      // Not the best one, not proven, or of a run that goes on and has another one now.
+      if (best == chosen.end() || best->second.source != &source ||
+          best->second.trace != row.trace_sha256 || best->second.is_valid == bool(row.invalid))
+        return {};
+      ++summary.rows;
+      summary.not_attempted.add(row);
+      if (is_open(row)) ++summary.invalid;
+      if (there && &source == &sources.front()) return {};
+      const auto task = plan.find_task(row.task);
+      if (!task) {
+        return Failure{Fault::kStore, "its plan has no task `" + row.task + "`", source.dir};
+      }
+      ++summary.added;
+      return taker.add(source, std::move(row), static_cast<int>(*task));
+    }));
   }
+  PROBE_TRY(taker.end());
   return summary;
 }
 

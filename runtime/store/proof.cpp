@@ -6,7 +6,9 @@
 #include <system_error>
 #include <thread>
 
+#include "runtime/plan/fixtures.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/store/proof_book.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
@@ -66,6 +68,23 @@ std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace
   return "its verdicts are not what its own plan says of its measurements";
 }
 
+void add_times(const plan::TaskRecord& task, ResultRow& row) {
+  row.idle = static_cast<int>(task.idle);
+  row.delay = static_cast<int>(task.delay);
+}
+
+// As add_task(), of a trace that was read before.
+bool add_known(const plan::Plan& plan, const std::vector<double>& joints, ResultRow& row) {
+  const auto index = plan.find_task(row.task);
+  if (!index) return false;
+  const plan::TaskRecord& task = plan.tasks()[*index];
+  const auto names = plan::joint_names_of(plan.tables(), plan.scenes()[task.scene]);
+  if (!joints.empty() && joints.size() != names.size()) return false;
+  add_times(task, row);
+  for (std::size_t j = 0; j < joints.size(); ++j) row.joints.push_back({names[j], joints[j]});
+  return true;
+}
+
 std::string terms_of(const Trace& trace) {
   return trace.header.live ? to_text(*trace.header.live) : "";
 }
@@ -74,8 +93,7 @@ std::string terms_of(const Trace& trace) {
 
 void add_task(const plan::Plan& plan, const Trace& trace, ResultRow& row) {
   const plan::TaskRecord& task = plan.tasks()[*plan.find_task(row.task)];
-  row.idle = static_cast<int>(task.idle);
-  row.delay = static_cast<int>(task.delay);
+  add_times(task, row);
   if (row.invalid || trace.steps.empty()) return;
   const std::size_t robots = plan.robots()[plan.scenes()[task.scene].robot].drives.count;
   for (std::size_t j = robots; j < trace.header.joints.size(); ++j)
@@ -97,52 +115,119 @@ Result<Trace> prove(const plan::Plan& plan, const ResultRow& row) {
   return Failure{Fault::kTrace, std::move(wrong), row.trace};
 }
 
-Result<ProvenResults> read_proven_results(const std::string& dir) {
-  PROBE_ASSIGN(std::vector<ResultRow> rows, read_results(dir));
-  PROBE_ASSIGN(const plan::Plan plan, open_run_plan(dir));
-  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
-  ProvenResults proven;
-  proven.live_terms = record.identity.live;
-  proven.only_success = record.identity.only_success;
-  std::vector<std::optional<Failure>> wrong(rows.size());
-  std::vector<policy::LiveFigures> live(rows.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < rows.size(); i = next++) {
-      const auto trace = prove(plan, rows[i]);
-      if (!trace) {
-        wrong[i] = trace.failure();
-      } else if (const std::string terms = terms_of(*trace); terms != proven.live_terms) {
-        wrong[i] = Failure{Fault::kTrace,
-                           std::string("its world ") +
-                               (terms.empty() ? "waited for the policy" : "was " + terms) +
-                               ", that of its run " +
-                               (proven.live_terms.empty() ? "waits" : "is " + proven.live_terms),
-                           rows[i].trace};
-      } else {
-        if (!rows[i].invalid) live[i] = live_figures(*trace);
-        add_task(plan, *trace, rows[i]);
-      }
-    }
-  };
-  std::vector<std::thread> others;
-  const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-  try {
-    for (std::size_t i = 1; i < std::min(cores, rows.size()); ++i) others.emplace_back(work);
-  } catch (const std::system_error&) {  // fewer threads do the same
-  }
-  work();
-  for (std::thread& thread : others) thread.join();
+namespace {
 
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (wrong[i]) {
-      proven.refused.push_back(to_text(key_of(rows[i])) + " is left out: " + to_text(*wrong[i]));
+// Rows some thousand at a time: proven side by side, then handed on in their order.
+class Prover {
+ public:
+  Prover(const std::string& dir, const plan::Plan& plan, ProvenRun& run, const RowVisitor& visit)
+      : plan_(plan), run_(run), visit_(visit), book_(dir, plan) {}
+
+  Status add(ResultRow&& row) {
+    constexpr std::size_t kAtOnce = 4096;
+    rows_.push_back({std::move(row), {}, {}, {}, false});
+    return rows_.size() < kAtOnce ? Status() : hand_on();
+  }
+
+  Status end() {
+    PROBE_TRY(hand_on());
+    book_.keep();
+    return {};
+  }
+
+ private:
+  struct Row {
+    ResultRow row;
+    std::optional<Failure> wrong;
+    policy::LiveFigures live;
+    std::optional<ProofKey> key;
+    bool is_new = false;
+  };
+
+  void prove_one(Row& one) const {
+    // How late answers were is in traces alone.
+    if (run_.live_terms.empty()) one.key = proof_key(one.row);
+    if (one.key) {
+      const std::vector<double>* known = book_.find(*one.key);
+      if (known != nullptr && add_known(plan_, *known, one.row)) return;
+    }
+    const auto trace = prove(plan_, one.row);
+    if (!trace) {
+      one.wrong = trace.failure();
+    } else if (const std::string terms = terms_of(*trace); terms != run_.live_terms) {
+      one.wrong =
+          Failure{Fault::kTrace,
+                  std::string("its world ") +
+                      (terms.empty() ? "waited for the policy" : "was " + terms) +
+                      ", that of its run " +
+                      (run_.live_terms.empty() ? "waits" : "is " + run_.live_terms),
+                  one.row.trace};
     } else {
-      proven.rows.push_back(std::move(rows[i]));
-      proven.live.add(live[i]);
+      if (!one.row.invalid) one.live = live_figures(*trace);
+      add_task(plan_, *trace, one.row);
+      // A change while it was read leaves another stamp.
+      one.is_new = one.key && proof_key(one.row) == one.key;
     }
   }
-  return proven;
+
+  Status hand_on() {
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      for (std::size_t i = next++; i < rows_.size(); i = next++) prove_one(rows_[i]);
+    };
+    std::vector<std::thread> others;
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    try {
+      for (std::size_t i = 1; i < std::min(cores, rows_.size()); ++i) others.emplace_back(work);
+    } catch (const std::system_error&) {  // fewer threads do the same
+    }
+    work();
+    for (std::thread& thread : others) thread.join();
+    for (Row& one : rows_) {
+      if (one.is_new) {
+        std::vector<double> joints;
+        for (const JointValue& joint : one.row.joints) joints.push_back(joint.position);
+        book_.add(*one.key, std::move(joints));
+      }
+      if (one.wrong) {
+        run_.refused.push_back(to_text(key_of(one.row)) + " is left out: " + to_text(*one.wrong));
+        continue;
+      }
+      run_.live.add(one.live);
+      PROBE_TRY(visit_(std::move(one.row)));
+    }
+    rows_.clear();
+    return {};
+  }
+
+  const plan::Plan& plan_;
+  ProvenRun& run_;
+  const RowVisitor& visit_;
+  ProofBook book_;
+  std::vector<Row> rows_;
+};
+
+}  // namespace
+
+Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit) {
+  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
+  PROBE_ASSIGN(const plan::Plan plan, open_run_plan(dir));
+  ProvenRun run;
+  run.live_terms = record.identity.live;
+  run.only_success = record.identity.only_success;
+  Prover prover(dir, plan, run, visit);
+  PROBE_TRY(for_each_row(dir, [&](ResultRow&& row) { return prover.add(std::move(row)); }));
+  PROBE_TRY(prover.end());
+  return run;
+}
+
+Result<ProvenResults> read_proven_results(const std::string& dir) {
+  std::vector<ResultRow> rows;
+  PROBE_ASSIGN(ProvenRun run, for_each_proven_row(dir, [&](ResultRow&& row) -> Status {
+    rows.push_back(std::move(row));
+    return {};
+  }));
+  return ProvenResults{std::move(run), std::move(rows)};
 }
 
 }  // namespace probe::store

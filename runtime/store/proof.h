@@ -23,8 +23,8 @@ void add_task(const plan::Plan& plan, const Trace& trace, ResultRow& row);
 
 policy::LiveFigures live_figures(const Trace& trace);
 
-struct ProvenResults {
-  std::vector<ResultRow> rows;       // as read_results has them, with `idle`, `delay`, `joints`
+// What is told of a run beside its rows.
+struct ProvenRun {
   std::vector<std::string> refused;  // a sentence each: which episode, and what is wrong
   // Of a run whose world does not wait: its terms, and how often and how late its policy answered
   // in valid episodes. Empty: it waits.
@@ -33,8 +33,17 @@ struct ProvenResults {
   bool only_success = false;  // RunIdentity::only_success
 };
 
-// The rows of a run that their traces bear; reads all of them, on every core. Fails as
-// read_results and open_run_plan do.
+// Calls `visit` with the rows of a run that their traces bear, as for_each_row has them, with
+// `idle`, `delay`, `joints`. Reads traces on every core, some thousand rows ahead; those that were
+// proven before and have not changed since are not read again (ProofBook). Fails as for_each_row
+// and open_run_plan do.
+Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit);
+
+struct ProvenResults : ProvenRun {
+  std::vector<ResultRow> rows;
+};
+
+// All of them at once.
 Result<ProvenResults> read_proven_results(const std::string& dir);
 
 }  // namespace probe::store

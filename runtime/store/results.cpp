@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string_view>
+#include <utility>
 
 #include "runtime/base/csv.h"
 #include "runtime/base/exact_text.h"
@@ -78,107 +79,111 @@ std::string column_of(const std::string& metric) {
 
 Json or_null(const std::optional<std::string>& text) { return text ? Json(*text) : nullptr; }
 
-// Every metric that some row has, in order of first use.
-std::vector<std::string> metric_names(std::span<const ResultRow> rows) {
-  std::vector<std::string> names;
-  for (const ResultRow& row : rows) {
-    for (const MetricValue& metric : row.metrics) {
-      if (std::find(names.begin(), names.end(), metric.name) == names.end()) {
-        names.push_back(metric.name);
-      }
-    }
-  }
-  return names;
-}
-
-// Every joint that some row has, in order of first use.
-std::vector<std::string> joint_names(std::span<const ResultRow> rows) {
-  std::vector<std::string> names;
-  for (const ResultRow& row : rows) {
-    for (const JointValue& joint : row.joints) {
-      if (std::ranges::find(names, joint.name) == names.end()) names.push_back(joint.name);
-    }
-  }
-  return names;
+// In order of first use.
+void add_name(std::vector<std::string>& names, const std::string& name) {
+  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
 }  // namespace
 
-std::string results_to_json(std::span<const ResultRow> rows) {
-  const std::vector<std::string> names = metric_names(rows);
-  auto array = Json::array();
-  for (const ResultRow& row : rows) {
-    Json json;
-    json["task"] = row.task;
-    json["episode"] = row.episode;
-    json["seed"] = row.seed;
-    json["policy"] = row.policy;
-    for (const std::string& name : names) json[column_of(name)] = nullptr;
-    for (const MetricValue& metric : row.metrics) {
-      if (row.invalid) continue;
-      if (metric.is_bool) {
-        json[column_of(metric.name)] = metric.value != 0;
-      } else {
-        json[column_of(metric.name)] = metric.value;
-      }
+void RowTexts::know(const ResultRow& row) {
+  rare_.resize(std::size(kRareFields));
+  for (const MetricValue& metric : row.metrics) add_name(metrics_, metric.name);
+  for (const JointValue& joint : row.joints) add_name(joints_, joint.name);
+  for (std::size_t i = 0; i < rare_.size(); ++i)
+    rare_[i] = rare_[i] || !kRareFields[i].cell(row).empty();
+}
+
+std::string RowTexts::json_begin() const { return "["; }
+
+std::string RowTexts::json(const ResultRow& row) {
+  Json json;
+  json["task"] = row.task;
+  json["episode"] = row.episode;
+  json["seed"] = row.seed;
+  json["policy"] = row.policy;
+  for (const std::string& name : metrics_) json[column_of(name)] = nullptr;
+  for (const MetricValue& metric : row.metrics) {
+    if (row.invalid) continue;
+    if (metric.is_bool) {
+      json[column_of(metric.name)] = metric.value != 0;
+    } else {
+      json[column_of(metric.name)] = metric.value;
     }
-    json["steps"] = row.steps;
-    json["invalid"] = or_null(row.invalid);
-    json["prompt_sha256"] = row.prompt_sha256;
-    json["image_sha256"] = row.image_sha256;
-    json["frames_sha256"] = row.frames_sha256;
-    json["sent_prompt_sha256"] = or_null(row.sent_prompt_sha256);
-    json["sent_image_sha256"] = or_null(row.sent_image_sha256);
-    json["trace_sha256"] = row.trace_sha256;
-    json["episode_id"] = row.episode_id;
-    json["start_id"] = row.start_id;
-    json["trace"] = row.trace;
-    if (!row.live.empty()) json["live"] = row.live;
-    if (row.only_success) json["only_success"] = true;
-    if (row.remark) json["remark"] = *row.remark;
-    if (row.idle != 0) json["idle"] = row.idle;
-    if (row.delay != 0) json["delay"] = row.delay;
-    for (const JointValue& joint : row.joints)
-      json[std::string(kJoints)][joint.name] = joint.position;
-    array.push_back(std::move(json));
   }
-  // A policy's error text may hold any bytes; what is not UTF-8 is replaced, never thrown.
-  return array.dump(1) + "\n";
+  json["steps"] = row.steps;
+  json["invalid"] = or_null(row.invalid);
+  json["prompt_sha256"] = row.prompt_sha256;
+  json["image_sha256"] = row.image_sha256;
+  json["frames_sha256"] = row.frames_sha256;
+  json["sent_prompt_sha256"] = or_null(row.sent_prompt_sha256);
+  json["sent_image_sha256"] = or_null(row.sent_image_sha256);
+  json["trace_sha256"] = row.trace_sha256;
+  json["episode_id"] = row.episode_id;
+  json["start_id"] = row.start_id;
+  json["trace"] = row.trace;
+  if (!row.live.empty()) json["live"] = row.live;
+  if (row.only_success) json["only_success"] = true;
+  if (row.remark) json["remark"] = *row.remark;
+  if (row.idle != 0) json["idle"] = row.idle;
+  if (row.delay != 0) json["delay"] = row.delay;
+  for (const JointValue& joint : row.joints)
+    json[std::string(kJoints)][joint.name] = joint.position;
+  // An array of one, whose lines are those of a longer one. A policy's error text may hold any
+  // bytes; what is not UTF-8 is replaced, never thrown.
+  auto array = Json::array();
+  array.push_back(std::move(json));
+  const std::string text = array.dump(1);
+  return (std::exchange(is_first_, false) ? "" : ",") + text.substr(1, text.size() - 3);
+}
+
+std::string RowTexts::json_end() const { return is_first_ ? "]\n" : "\n]\n"; }
+
+std::string RowTexts::csv_begin() const {
+  std::vector<std::string> header(std::begin(kBefore), std::end(kBefore));
+  for (const std::string& name : metrics_) header.push_back(column_of(name));
+  header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
+  for (std::size_t i = 0; i < rare_.size(); ++i) {
+    if (rare_[i]) header.emplace_back(kRareFields[i].name);
+  }
+  for (const std::string& joint : joints_) header.push_back(std::string(kJointPrefix) + joint);
+  return line_of(header);
+}
+
+std::string RowTexts::csv(const ResultRow& row) const {
+  std::vector<std::string> cells = {row.task, std::to_string(row.episode),
+                                    std::to_string(row.seed), row.policy};
+  for (const std::string& name : metrics_) cells.push_back(cell(row, name));
+  cells.push_back(std::to_string(row.steps));
+  for (const std::string& value :
+       {row.invalid.value_or(""), row.prompt_sha256, row.image_sha256, row.frames_sha256,
+        row.sent_prompt_sha256.value_or(""), row.sent_image_sha256.value_or(""), row.trace_sha256,
+        row.episode_id, row.start_id, row.trace}) {
+    cells.push_back(value);
+  }
+  for (std::size_t i = 0; i < rare_.size(); ++i) {
+    if (rare_[i]) cells.push_back(kRareFields[i].cell(row));
+  }
+  for (const std::string& joint : joints_) {
+    const auto at = std::ranges::find(row.joints, joint, &JointValue::name);
+    cells.push_back(at == row.joints.end() ? "" : exact_text(at->position));
+  }
+  return line_of(cells);
+}
+
+std::string results_to_json(std::span<const ResultRow> rows) {
+  RowTexts texts;
+  for (const ResultRow& row : rows) texts.know(row);
+  std::string text = texts.json_begin();
+  for (const ResultRow& row : rows) text += texts.json(row);
+  return text + texts.json_end();
 }
 
 std::string results_to_csv(std::span<const ResultRow> rows) {
-  const std::vector<std::string> names = metric_names(rows);
-  std::vector<std::string> header(std::begin(kBefore), std::end(kBefore));
-  for (const std::string& name : names) header.push_back(column_of(name));
-  header.insert(header.end(), std::begin(kBehind), std::end(kBehind));
-  std::vector<RareField> rare;
-  for (const RareField& field : kRareFields) {
-    if (std::ranges::all_of(rows, [&](const ResultRow& row) { return field.cell(row).empty(); }))
-      continue;
-    rare.push_back(field);
-    header.emplace_back(field.name);
-  }
-  const std::vector<std::string> joints = joint_names(rows);
-  for (const std::string& joint : joints) header.push_back(std::string(kJointPrefix) + joint);
-  std::string text = line_of(header);
-  for (const ResultRow& row : rows) {
-    std::vector<std::string> cells = {row.task, std::to_string(row.episode),
-                                      std::to_string(row.seed), row.policy};
-    for (const std::string& name : names) cells.push_back(cell(row, name));
-    cells.push_back(std::to_string(row.steps));
-    for (const std::string& value :
-         {row.invalid.value_or(""), row.prompt_sha256, row.image_sha256, row.frames_sha256,
-          row.sent_prompt_sha256.value_or(""), row.sent_image_sha256.value_or(""), row.trace_sha256,
-          row.episode_id, row.start_id, row.trace}) {
-      cells.push_back(value);
-    }
-    for (const RareField& field : rare) cells.push_back(field.cell(row));
-    for (const std::string& joint : joints) {
-      const auto at = std::ranges::find(row.joints, joint, &JointValue::name);
-      cells.push_back(at == row.joints.end() ? "" : exact_text(at->position));
-    }
-    text += line_of(cells);
-  }
+  RowTexts texts;
+  for (const ResultRow& row : rows) texts.know(row);
+  std::string text = texts.csv_begin();
+  for (const ResultRow& row : rows) text += texts.csv(row);
   return text;
 }
 

@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -59,6 +60,13 @@ struct ResultRow {
 // (kStore) if there is no run in `dir`.
 Result<std::vector<ResultRow>> read_results(const std::string& dir);
 
+// The same rows one by one, so that a million of them need no memory. What `visit` fails with ends
+// it.
+using RowVisitor = std::function<Status(ResultRow&&)>;
+Status for_each_row(const std::string& dir, const RowVisitor& visit);
+// How many there are.
+Result<std::size_t> count_rows(const std::string& dir);
+
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
 // Behind `trace` stand, where there is something to say, `live`, `only_success` (true where the run
 // stored no other episodes), `remark`, `idle` and `delay`
@@ -67,5 +75,23 @@ std::string results_to_json(std::span<const ResultRow> rows);
 // The same as comma-separated values with a header line; truths as true/false. What some rows have
 // to say has a column, and each joint one: `joint.cabinet.top`.
 std::string results_to_csv(std::span<const ResultRow> rows);
+
+// The same texts in pieces, of rows that are not all there at once: what stands in them has to be
+// known before the first.
+class RowTexts {
+ public:
+  void know(const ResultRow& row);  // of every row, before the first piece
+  // Before the rows, each row with what divides it from the one before, and behind them.
+  std::string json_begin() const;
+  std::string json(const ResultRow& row);
+  std::string json_end() const;
+  std::string csv_begin() const;
+  std::string csv(const ResultRow& row) const;
+
+ private:
+  std::vector<std::string> metrics_, joints_;  // in order of first use
+  std::vector<bool> rare_;                     // some row has something to say
+  bool is_first_ = true;
+};
 
 }  // namespace probe::store

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <set>
+#include <unordered_map>
 
 #include "runtime/base/file.h"
 #include "runtime/base/folder_kind.h"
@@ -19,6 +22,7 @@
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
 #include "runtime/store/remarks_table.h"
+#include "runtime/store/room.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/stored_trace.h"
 #include "runtime/store/unproven_table.h"
@@ -86,12 +90,18 @@ std::string raised_schema() {
   return out;
 }
 
-// All columns, by EpisodeColumn; null where the file's version has none.
+// Who reads rows keeps writers waiting no longer than so many take.
+constexpr std::size_t kRowsAtOnce = 4096;
+
+// All columns of a task's rows behind an episode and seed, by EpisodeColumn; null where the file's version has none. Their
+// order is the table's own: nothing is sorted.
 std::string select_episodes(int version) {
   const auto item = [version](std::size_t k) {
     return kEpisodeSince[k] > version ? std::string("null") : std::string(kEpisodeColumns[k]);
   };
-  return "select " + each_column(item) + " from episodes order by task_order, task, episode, seed";
+  return "select " + each_column(item) +
+         " from episodes where task = ? and (episode, seed) > (?, ?) order by episode, seed limit " +
+         std::to_string(kRowsAtOnce);
 }
 
 std::string insert_episode() {
@@ -101,9 +111,9 @@ std::string insert_episode() {
          each_column(place) + ")";
 }
 
-// What is read of one folder: a campaign has a few hundred thousand episodes.
-constexpr int kMostRows = 1'000'000;
-constexpr std::size_t kMostBytes = std::size_t{256} << 20;
+// What is read of one folder: a campaign has a few million episodes, of some 700 bytes each.
+constexpr std::size_t kMostRows = 4'000'000;
+constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 
 Failure failed(const std::string& message, const std::string& where) {
   return {Fault::kStore, message, where};
@@ -160,28 +170,98 @@ std::optional<std::vector<MetricValue>> metrics_from_text(const std::string& tex
   return metrics;
 }
 
-Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
-  PROBE_ASSIGN(const auto record, load_record(database));
-  if (!record) return failed("no run here: results.sqlite is empty", dir);
-  PROBE_ASSIGN(const auto remarks, RemarksTable(database).all());
-  Statement select(database, select_episodes(record->schema).c_str());
-  std::vector<ResultRow> rows;
-  std::size_t bytes = 0;
-  while (select.next()) {
-    for (int column = 0; column < EpisodeColumn::kCount; ++column) bytes += select.bytes(column);
-    if (bytes > kMostBytes || rows.size() >= kMostRows) {
-      return failed("results.sqlite has more rows than any run: more than " +
-                        std::to_string(kMostRows) + ", or more than " +
-                        std::to_string(kMostBytes >> 20) + " MiB of them",
-                    database.path());
+// Texts of metrics that occur again and again, each read once.
+class MetricTexts {
+ public:
+  const std::optional<std::vector<MetricValue>>& read(const std::string& text) {
+    constexpr std::size_t kMost = 4096;
+    if (known_.size() >= kMost) known_.clear();
+    const auto [at, is_new] = known_.try_emplace(text);
+    if (is_new) at->second = metrics_from_text(text);
+    return at->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::optional<std::vector<MetricValue>>> known_;
+};
+
+Failure no_texts(const Database& database) {
+  return failed("results.sqlite has names or numbers of another type than any run's; " +
+                    std::string(Database::kRunAdvice),
+                database.path());
+}
+
+// Tasks with rows, in the plan's order, by one look a task.
+Result<std::vector<std::string>> tasks_in_order(Database& database) {
+  std::vector<std::pair<int, std::string>> tasks;
+  Statement first(database, "select task, task_order from episodes order by task limit 1");
+  Statement next(database,
+                 "select task, task_order from episodes where task > ? order by task limit 1");
+  bool found = first.next();
+  PROBE_TRY(first.done());
+  if (found) tasks.emplace_back(first.number(1), first.text(0));
+  while (found) {
+    next.restart();
+    found = next.bind(tasks.back().second).next();
+    PROBE_TRY(next.done());
+    if (!found) break;
+    if (next.text(0) == tasks.back().second || tasks.size() >= kMostRows) return no_texts(database);
+    tasks.emplace_back(next.number(1), next.text(0));
+  }
+  std::sort(tasks.begin(), tasks.end());
+  std::vector<std::string> names;
+  for (auto& [order, name] : tasks) names.push_back(std::move(name));
+  return names;
+}
+
+// Rows of a folder's database, some thousand at a time.
+class RowReader {
+ public:
+  static Result<RowReader> open(Database& database, const std::string& dir) {
+    PROBE_ASSIGN(auto record, load_record(database));
+    if (!record) return failed("no run here: results.sqlite is empty", dir);
+    PROBE_ASSIGN(auto remarks, RemarksTable(database).all());
+    return RowReader(database, dir, std::move(*record), std::move(remarks));
+  }
+
+  // Those of `task` behind an episode and seed, as many as are read at once.
+  Result<std::vector<ResultRow>> read(const std::string& task, std::int64_t episode,
+                                      std::int64_t seed) {
+    std::vector<ResultRow> rows;
+    Statement select(database_, select_.c_str());
+    select.bind(task).bind(episode).bind(seed);
+    while (select.next()) {
+      for (int column = 0; column < EpisodeColumn::kCount; ++column) bytes_ += select.bytes(column);
+      if (bytes_ > kMostBytes || ++count_ > kMostRows) {
+        return failed("results.sqlite has more rows than any run: more than " +
+                          std::to_string(kMostRows) + ", or more than " +
+                          std::to_string(kMostBytes >> 20) + " MiB of them",
+                      database_.path());
+      }
+      rows.push_back(row_of(select));
     }
+    PROBE_TRY(select.done());
+    return rows;
+  }
+
+ private:
+  RowReader(Database& database, const std::string& dir, RunRecord record,
+            std::map<EpisodeKey, std::string> remarks)
+      : database_(database),
+        dir_(dir),
+        base_(absolute_path(dir) + "/"),
+        select_(select_episodes(record.schema)),
+        record_(std::move(record)),
+        remarks_(std::move(remarks)) {}
+
+  ResultRow row_of(const Statement& select) {
     ResultRow row;
     row.task = select.text(EpisodeColumn::kTask);
     row.episode = select.number(EpisodeColumn::kEpisode);
     row.seed = select.number(EpisodeColumn::kSeed);
     row.policy = select.text(EpisodeColumn::kPolicy);
-    auto metrics = metrics_from_text(select.text(EpisodeColumn::kMetrics));
-    if (metrics) row.metrics = std::move(*metrics);
+    const auto& metrics = metric_texts_.read(select.text(EpisodeColumn::kMetrics));
+    if (metrics) row.metrics = *metrics;
     row.steps = select.number(EpisodeColumn::kSteps);
     row.invalid = select.optional_text(EpisodeColumn::kInvalid);
     if (!row.invalid && !metrics) {
@@ -194,34 +274,62 @@ Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& 
     row.trace_sha256 = select.text(EpisodeColumn::kTraceSha);
     row.episode_id = select.text(EpisodeColumn::kEpisodeId);
     row.start_id = select.text(EpisodeColumn::kStartId);
-    row.trace = absolute_path((fs::path(dir) / select.text(EpisodeColumn::kTrace)).string());
+    row.trace = select.text(EpisodeColumn::kTrace);
+    // What any run writes is normal as it stands.
+    const bool is_ours = row.task.find('/') == row.task.npos && row.task != ".." &&
+                         row.trace == relative_trace(key_of(row));
+    row.trace = is_ours ? base_ + row.trace : absolute_path((fs::path(dir_) / row.trace).string());
     row.sent_prompt_sha256 = select.optional_text(EpisodeColumn::kSentPromptSha);
     row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
-    row.live = record->identity.live;
-    row.only_success = record->identity.only_success;
-    if (const auto said = remarks.find(key_of(row)); said != remarks.end())
-      row.remark = said->second;
-    rows.push_back(std::move(row));
+    row.live = record_.identity.live;
+    row.only_success = record_.identity.only_success;
+    if (!remarks_.empty()) {
+      if (const auto said = remarks_.find(key_of(row)); said != remarks_.end())
+        row.remark = said->second;
+    }
+    return row;
   }
-  PROBE_TRY(select.done());
+
+  Database& database_;
+  std::string dir_, base_, select_;
+  RunRecord record_;
+  std::map<EpisodeKey, std::string> remarks_;
+  MetricTexts metric_texts_;
+  std::size_t bytes_ = 0, count_ = 0;
+};
+
+Status visit_rows(Database& database, const std::string& dir, const RowVisitor& visit) {
+  PROBE_ASSIGN(RowReader reader, RowReader::open(database, dir));
+  PROBE_ASSIGN(const auto tasks, tasks_in_order(database));
+  for (const std::string& task : tasks) {
+    std::pair<std::int64_t, std::int64_t> last{INT64_MIN, INT64_MIN};
+    for (;;) {
+      PROBE_ASSIGN(std::vector<ResultRow> rows, reader.read(task, last.first, last.second));
+      const std::size_t count = rows.size();
+      for (ResultRow& row : rows) {
+        const std::pair<std::int64_t, std::int64_t> key{row.episode, row.seed};
+        if (key <= last) return no_texts(database);
+        last = key;
+        PROBE_TRY(visit(std::move(row)));
+      }
+      if (count < kRowsAtOnce) break;
+    }
+  }
+  return {};
+}
+
+Result<std::vector<ResultRow>> load_rows(Database& database, const std::string& dir) {
+  std::vector<ResultRow> rows;
+  PROBE_TRY(visit_rows(database, dir, [&](ResultRow&& row) -> Status {
+    rows.push_back(std::move(row));
+    return {};
+  }));
   return rows;
 }
 
 void bind_episode(Statement& insert, const ResultRow& row, int task_order) {
 #define PROBE_EPISODE_COLUMN(Name, name, type, since, value) insert.bind(value);
 #include "runtime/store/episode_columns.def"
-}
-
-// "3-42.trace.tmp", "3-42.mp4.1234-0.tmp": what this program writes before it renames.
-bool is_leftover(std::string_view name) {
-  constexpr std::string_view kDigits = "0123456789";
-  const std::size_t dash = name.find('-'), dot = name.find('.');
-  if (!name.ends_with(".tmp") || dash == name.npos || dot == name.npos || dash > dot) return false;
-  const std::string_view kind = name.substr(dot);
-  return dash > 0 && name.substr(0, dash).find_first_not_of(kDigits) == name.npos &&
-         dot > dash + 1 &&
-         name.substr(dash + 1, dot - dash - 1).find_first_not_of("-0123456789") == name.npos &&
-         (kind.starts_with(".trace") || kind.starts_with(".mp4"));
 }
 
 class FolderStore final : public Store {
@@ -294,6 +402,32 @@ class FolderStore final : public Store {
       if (is_watched_) PROBE_TRY(unproven_.add(key_of(row)));
       PROBE_TRY(remarks_.put(key_of(row), row.remark));
       return insert_row(row, task_order);
+    });
+  }
+
+  Status commit(std::span<const Finished> finished) override {
+    std::vector<std::string> traces, temporary;
+    std::set<std::string> folders;
+    for (const Finished& one : finished) {
+      traces.push_back(trace_path(dir_, key_of(one.row)));
+      temporary.push_back(traces.back() + ".tmp");
+      folders.insert(fs::path(traces.back()).parent_path().string());
+    }
+    if (auto synced = sync_disk(temporary); !synced)
+      return failed(synced.failure().message, synced.failure().where);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      if (std::rename(temporary[i].c_str(), traces[i].c_str()) != 0)
+        return failed(std::string("cannot be renamed: ") + std::strerror(errno), temporary[i]);
+    }
+    for (const std::string& folder : folders) PROBE_TRY(sync_folder(folder));
+    const std::lock_guard lock(mutex_);
+    return in_one([&]() -> Status {
+      for (const Finished& one : finished) {
+        if (is_watched_) PROBE_TRY(unproven_.add(key_of(one.row)));
+        PROBE_TRY(remarks_.put(key_of(one.row), one.row.remark));
+        PROBE_TRY(insert_row(one.row, one.task_order));
+      }
+      return {};
     });
   }
 
@@ -500,6 +634,21 @@ Result<std::vector<ResultRow>> read_results(const std::string& dir) {
   if (!is_there(database_path(dir))) return no_run(dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return load_rows(database, dir);
+}
+
+Status for_each_row(const std::string& dir, const RowVisitor& visit) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return visit_rows(database, dir, visit);
+}
+
+Result<std::size_t> count_rows(const std::string& dir) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  Statement count(database, "select count(*) from episodes");
+  const std::int64_t rows = count.next() ? count.whole(0) : 0;
+  PROBE_TRY(count.done());
+  return static_cast<std::size_t>(rows);
 }
 
 }  // namespace probe::store

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,14 @@ class Store {
   // Renames the temporary trace, whose bytes are on the disk, and writes the row, replacing an
   // invalid one. `task_order` sorts rows.
   virtual Status commit(const ResultRow& row, int task_order) = 0;
+
+  // Of several, whose temporary traces need not be on the disk yet: waited for together, the rows in
+  // one transaction. A kill leaves all or none of the rows.
+  struct Finished {
+    ResultRow row;
+    int task_order = 0;
+  };
+  virtual Status commit(std::span<const Finished> finished) = 0;
 
   // From now on commit() also notes that who answered the row's policy questions was not shown.
   virtual Status note_unproven() = 0;

@@ -14,6 +14,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_merge(program, exit);
   add_slurm(program, exit);
   add_slurm_ask(program, exit);
+  add_k8s(program, exit);
   add_policy(program, exit);
   add_serve(program, exit);
   add_results(program, exit);
@@ -23,11 +24,14 @@ void add_all_verbs(Verb program, int& exit) {
   add_report(program, exit);
   add_compare(program, exit);
   add_gate(program, exit);
+  add_du(program, exit);
+  add_gc(program, exit);
   add_demos(program, exit);
   add_export(program, exit);
   add_assets(program, exit);
   add_libero(program, exit);
   add_studio(program, exit);
+  add_mcp(program, exit);
   add_doctor(program, exit);
   add_demo(program, exit);
   add_completion(program, exit);

@@ -21,14 +21,6 @@ constexpr double kLogOften = 10, kLogSeldom = 60, kOftenFor = 120;  // s
 
 }  // namespace
 
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long long>(std::llround(std::max(0.0, seconds)));
-  if (whole < 100) return fmt::format("{} s", whole);
-  const long long minutes = (whole + 30) / 60;
-  if (minutes < 100) return fmt::format("{} min", minutes);
-  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
-}
-
 void Progress::add(const run::RunProgress& progress) {
   done_ = progress.done;
   skipped_ = progress.skipped;

@@ -7,10 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "runtime/follow/follow.h"
 #include "runtime/run/run.h"
 #include "runtime/stats/intervals.h"
 
 namespace probe::cli {
+
+using follow::duration_text;
 
 class Progress {
  public:
@@ -42,8 +45,5 @@ class Progress {
   int done_ = 0, skipped_ = 0, total_ = 0, invalid_ = 0, not_attempted_ = 0;
   std::vector<Rate> rates_;  // of this call's valid episodes
 };
-
-// "40 s", "12 min", "3 h 05 min".
-std::string duration_text(double seconds);
 
 }  // namespace probe::cli

@@ -9,6 +9,7 @@
 #include "runtime/ask/answers.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/answer_results.h"
+#include "runtime/cli/full/follow.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/compile/grafted.h"
@@ -24,8 +25,8 @@ namespace {
 
 struct ResultsArguments {
   std::string dir;
-  bool json = false, csv = false, delivery = false, events = false;
-  std::string with;
+  bool json = false, csv = false, delivery = false, events = false, follow = false;
+  std::string with, page;
   AssetOptions assets;
 };
 
@@ -39,8 +40,14 @@ void print_readings(const std::string& dir) {
   for (const std::string& sentence : summary->batches) put("{}\n", sentence);
 }
 
+// Rows that their traces do not bear; the exit that they leave.
+int say_refused(const store::ProvenRun& proven) {
+  for (const std::string& sentence : proven.refused) say("vlaprobe: {}\n", sentence);
+  return proven.refused.empty() ? kFine : kOutside;
+}
+
 // Of a world that did not wait for its policy.
-void print_live(const store::ProvenResults& proven) {
+void print_live(const store::ProvenRun& proven) {
   if (proven.live_terms.empty()) return;
   put("{}\n", proven.live_terms);
   put("live: {}\n", to_text(proven.live));
@@ -56,41 +63,104 @@ void print_batches(const std::string& dir) {
 }
 
 // In place of rates, which a folder of successes alone has none of.
-void print_successes(const std::string& dir, const std::vector<store::ResultRow>& rows) {
+void print_successes(const std::string& dir,
+                     const std::vector<std::pair<std::string, int>>& counts) {
   put("{} {}\n", dir, store::kSuccessesAlone);
-  std::vector<std::pair<std::string, int>> counts;  // a task's rows stand together
-  for (const store::ResultRow& row : rows) {
-    if (counts.empty() || counts.back().first != row.task) counts.push_back({row.task, 0});
-    if (!row.invalid) ++counts.back().second;
-  }
   for (const auto& [task, count] : counts) put("{}: {} successes kept\n", task, count);
 }
 
 // Whether what makes tasks different reached the policy.
-int delivery_verb(const ResultsArguments& arguments, const store::ProvenResults& proven) {
-  const std::vector<store::ResultRow>& rows = proven.rows;
+int delivery_verb(const ResultsArguments& arguments) {
   const auto plan = rejudge::stored_plan(arguments.dir);
-  if (!plan) return report({Fault::kStore, "its plan cannot be read", arguments.dir});
-  auto findings = run::check_delivery(*plan, rows);
+  if (!plan) {
+    const auto run = store::read_run_record(arguments.dir);
+    return report(run ? Failure{Fault::kStore, "its plan cannot be read", arguments.dir}
+                      : run.failure());
+  }
+  run::Delivery delivery(*plan);
+  int episodes = 0;
+  const auto proven = store::for_each_proven_row(arguments.dir, [&](store::ResultRow&& row) {
+    delivery.add(row);
+    ++episodes;
+    return Status();
+  });
+  if (!proven) return report(proven.failure());
+  const int exit = say_refused(*proven);
+  auto findings = delivery.findings();
   if (arguments.json) {
-    if (!proven.live_terms.empty()) {
+    if (!proven->live_terms.empty()) {
       run::DeliveryFinding live;
       live.kind = run::DeliveryFinding::Kind::kLive;
-      live.episodes = static_cast<int>(rows.size());
-      live.sentence = proven.live_terms + ": " + to_text(proven.live);
+      live.episodes = episodes;
+      live.sentence = proven->live_terms + ": " + to_text(proven->live);
       findings.push_back(std::move(live));
     }
     put("{}\n", run::to_json(findings));
-    return kFine;
+    return exit;
   }
   for (const run::DeliveryFinding& finding : findings) put("{}\n", finding.sentence);
   print_readings(arguments.dir);
   print_batches(arguments.dir);
-  print_live(proven);
+  print_live(*proven);
   if (findings.empty()) {
     put("every instruction and picture that should differ reached the policy different\n");
   }
-  return kFine;
+  return exit;
+}
+
+// A row an episode.
+int rows_verb(const ResultsArguments& arguments) {
+  constexpr std::size_t kAtOnce = 100'000;  // rows that are kept
+  const auto count = store::count_rows(arguments.dir);
+  if (!count) return report(count.failure());
+  store::RowTexts texts;
+  std::vector<store::ResultRow> rows;
+  const auto print = [&](const store::ResultRow& row) {
+    put("{}", arguments.json ? texts.json(row) : texts.csv(row));
+  };
+  const auto proven = store::for_each_proven_row(arguments.dir, [&](store::ResultRow&& row) {
+    texts.know(row);
+    if (*count <= kAtOnce) rows.push_back(std::move(row));
+    return Status();
+  });
+  if (!proven) return report(proven.failure());
+  const int exit = say_refused(*proven);
+  put("{}", arguments.json ? texts.json_begin() : texts.csv_begin());
+  for (const store::ResultRow& row : rows) print(row);
+  // What stands in them is known before the first is printed, so more are read twice; their traces
+  // are not.
+  if (*count > kAtOnce) {
+    const auto again = store::for_each_proven_row(arguments.dir, [&](store::ResultRow&& row) {
+      print(row);
+      return Status();
+    });
+    if (!again) return report(again.failure());
+  }
+  if (arguments.json) put("{}\n", texts.json_end());
+  return exit;
+}
+
+// Counts by task.
+int tally_verb(const ResultsArguments& arguments) {
+  rejudge::TallyText tally;
+  std::vector<std::pair<std::string, int>> successes;  // a task's rows stand together
+  const auto proven = store::for_each_proven_row(arguments.dir, [&](store::ResultRow&& row) {
+    tally.add(row);
+    if (successes.empty() || successes.back().first != row.task) successes.push_back({row.task, 0});
+    if (!row.invalid) ++successes.back().second;
+    return Status();
+  });
+  if (!proven) return report(proven.failure());
+  const int exit = say_refused(*proven);
+  if (proven->only_success) {
+    print_successes(arguments.dir, successes);
+    return exit;
+  }
+  const auto plan = rejudge::stored_plan(arguments.dir);
+  put("{}", tally.text(plan ? &*plan : nullptr));
+  print_live(*proven);
+  print_readings(arguments.dir);
+  return exit;
 }
 
 // What happened in the episodes. One whose trace does not bear its row is told of with the reason.
@@ -143,6 +213,9 @@ int events_verb(ResultsArguments arguments) {
 }
 
 int results_verb(const ResultsArguments& arguments) {
+  if (!arguments.page.empty() && !arguments.follow)
+    return report({Fault::kUsage, "is a page that follows a run, which --follow asks for", "--page"});
+  if (arguments.follow) return follow_run(arguments.dir, arguments.json, arguments.page);
   if (ask::holds_answers(arguments.dir)) {
     if (arguments.delivery || arguments.events)
       return report({Fault::kUsage, "is of runs; these are answers",
@@ -154,25 +227,8 @@ int results_verb(const ResultsArguments& arguments) {
   if (arguments.events) return events_verb(arguments);
   if (!arguments.with.empty())
     return report({Fault::kUsage, "says what events are, which --events asks for", "--with"});
-  auto proven = store::read_proven_results(arguments.dir);
-  if (!proven) return report(proven.failure());
-  for (const std::string& sentence : proven->refused) say("vlaprobe: {}\n", sentence);
-  const int exit = proven->refused.empty() ? kFine : kOutside;
-  const std::vector<store::ResultRow>& rows = proven->rows;
-  if (arguments.delivery) return std::max(exit, delivery_verb(arguments, *proven));
-  if (arguments.json) {
-    put("{}\n", store::results_to_json(rows));
-  } else if (arguments.csv) {
-    put("{}", store::results_to_csv(rows));
-  } else if (proven->only_success) {
-    print_successes(arguments.dir, rows);
-  } else {
-    const auto plan = rejudge::stored_plan(arguments.dir);
-    put("{}", rejudge::tally_text(rows, plan ? &*plan : nullptr));
-    print_live(*proven);
-    print_readings(arguments.dir);
-  }
-  return exit;
+  if (arguments.delivery) return delivery_verb(arguments);
+  return arguments.json || arguments.csv ? rows_verb(arguments) : tally_verb(arguments);
 }
 
 }  // namespace
@@ -192,6 +248,10 @@ void add_results(Verb app, int& exit) {
   verb.add_flag(
       "--events", arguments->events,
       "what happened: dropped, bumped, tipped; subgoals and their times; how the tool moved");
+  verb.add_flag("--follow", arguments->follow,
+                "while somebody writes: counts, rates, time left, newest failures (--json: a line "
+                "a look)");
+  verb.add_option("--page", arguments->page, "with --follow: PORT of a page of it; 0: any free one");
   verb.add_option("--with", arguments->with,
                   "with --events: the text that says what events are (std/events.probe)");
   add_asset_option(verb, arguments->assets);

@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "runtime/cli/full/progress_printer.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/follow/page.h"
 #include "runtime/run/policies.h"
 
 namespace probe::cli {
@@ -14,7 +17,7 @@ namespace {
 
 struct CallArguments {
   RunArguments run;
-  std::string shard = "1/1";
+  std::string shard = "1/1", watch;
 };
 
 int run_verb(const CallArguments& arguments) {
@@ -29,6 +32,13 @@ int run_verb(const CallArguments& arguments) {
   if (!loaded.plan) return loaded.exit;
 
   if (options->accepts_any_certificate) warn_of_insecure(options->policy);
+  std::unique_ptr<follow::FollowPage> page;
+  if (!arguments.watch.empty()) {
+    auto started = follow::FollowPage::start(options->out, arguments.watch);
+    if (!started) return report(started.failure());
+    page = std::move(*started);
+    say("{}\n", page->address());
+  }
   ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   auto summary = run::run(*loaded.plan, *options);
@@ -46,7 +56,9 @@ void add_run(Verb app, int& exit) {
   verb.footer("policies:\n" + run::policy_help() +
               "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
   add_run_options(verb, arguments->run);
-  verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them");
+  verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them. @I/N: I counted from 0");
+  verb.add_option("--watch", arguments->watch,
+                  "PORT of a page on this machine that follows the run; 0: any free one");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = run_verb(*arguments); });
 }

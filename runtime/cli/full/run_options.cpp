@@ -81,14 +81,21 @@ Result<std::pair<int, int>> parse_range(const std::string& text) {
 }
 
 Result<std::pair<int, int>> parse_shard(const std::string& text) {
-  const std::size_t slash = text.find('/');
-  if (slash != std::string::npos) {
-    const auto part = to_int(std::string_view(text).substr(0, slash));
-    const auto parts = to_int(std::string_view(text).substr(slash + 1));
-    if (part && parts && *part >= 1 && *part <= *parts) return std::pair(*part, *parts);
+  // Schedulers count from 0.
+  const int first = text.starts_with('@') ? 0 : 1;
+  const std::string_view numbers = std::string_view(text).substr(first == 0 ? 1 : 0);
+  const std::size_t slash = numbers.find('/');
+  if (slash != std::string_view::npos) {
+    const auto part = to_int(numbers.substr(0, slash));
+    const auto parts = to_int(numbers.substr(slash + 1));
+    if (part && parts && *part >= first && *part - first < *parts)
+      return std::pair(*part - first + 1, *parts);
   }
   return Failure{Fault::kUsage,
-                 fmt::format("--shard `{}` is not of the form I/N with 1 <= I <= N", text), ""};
+                 fmt::format("--shard `{}` is not of the form I/N with 1 <= I <= N, or @I/N with 0 "
+                             "<= I < N",
+                             text),
+                 ""};
 }
 
 Status check_name(const std::string& name) {

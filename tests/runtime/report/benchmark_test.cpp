@@ -279,6 +279,34 @@ TEST_CASE("a server's profile, and whether it reads, stand with what reached the
   CHECK(texts(checked).find("insecure") == std::string::npos);
 }
 
+TEST_CASE("of many episodes all are counted, some of each task are kept as stored, and a page has columns packed") {
+  RunsFolder folder;
+  const plan::Plan plan = suite_plan();
+  std::vector<int> seeds(60);
+  for (int i = 0; i < 60; ++i) seeds[static_cast<std::size_t>(i)] = i;
+  fake_run(folder / "a", plan, "pi0", {.tasks = {kFour[0], kFour[1]}, .seeds = seeds},
+           [](const std::string&, int episode, int seed) {
+             return Outcome{.success = (episode + seed) % 3 == 0};
+           });
+  const std::vector<std::string> dirs = {folder / "a"};
+  const auto all = load(dirs), some = load(dirs, {.most_rows = 1000});
+  REQUIRE(all.ok());
+  REQUIRE(some.ok());
+  CHECK(all->rows.size() == 2880);
+  CHECK(some->rows.size() == 24);  // six failures and six successes of each task
+  CHECK(some->episodes.size() == 2880);
+  const Json whole = page_data(*all, {.title = "x"}), few = page_data(*some, {.title = "x"});
+  CHECK(whole["episodes"] == few["episodes"]);
+  CHECK(whole["tables"] == few["tables"]);
+  const Json packed = page_data(*some, {.title = "x", .plain = 100})["episodes"];
+  CHECK(packed["policy"]["runs"] == Json::array({0, 2880}));
+  CHECK(packed["task"]["runs"].size() == 4);
+  CHECK(packed["seed"]["width"] == 1);
+  CHECK(packed["seed"]["bytes"].text().size() == 4 * 2880 / 3);
+  CHECK(packed["seed"]["bytes"].text().starts_with("AAECAwQF"));  // 0 1 2 3 4 5
+  CHECK(!packed.contains("sha"));
+}
+
 TEST_CASE("seventy-five truths stay apart, also where another run has other ones") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;
@@ -298,7 +326,8 @@ TEST_CASE("seventy-five truths stay apart, also where another run has other ones
   REQUIRE(benchmark.episodes.size() == 2);
   const Json data = page_data(benchmark, {.title = "many truths"});
   for (std::size_t e = 0; e < 2; ++e) {
-    const store::ResultRow& row = benchmark.episodes[e].row;
+    const store::ResultRow& row =
+        benchmark.rows[static_cast<std::size_t>(benchmark.episodes[e].row)];
     for (std::size_t m = 0; m < benchmark.metrics.size(); ++m) {
       const Metric& metric = benchmark.metrics[m];
       const auto stored =

@@ -26,7 +26,7 @@ struct Made {
     events.metrics = {.events = {"dropped", "tipped"}, .subgoals = {"reached_it", "placed_it"}};
     for (const Episode& e : benchmark.episodes) {
       rejudge::EpisodeEvents told;
-      const bool drops = e.row.task == kVariant && e.row.episode >= 8;
+      const bool drops = benchmark.tasks[static_cast<std::size_t>(e.task)].name == kVariant && e.start >= 8;
       told.counts = {{"dropped", drops ? 2 : 0}, {"tipped", 0}};
       told.firsts = {{"reached_it", 5}, {"placed_it", drops ? 0 : 9}};
       told.subgoals = 2;
@@ -73,7 +73,7 @@ TEST_CASE("an episode of which nothing is told counts nowhere, and a task lacks 
   made.events.told[0].reset();
   made.events.told[1]->untold = "invalid: gone";
   for (std::size_t i = 2; i < made.events.told.size(); ++i) {
-    if (made.benchmark.episodes[i].row.task == kBase) made.events.told[i]->counts.pop_back();
+    if (made.benchmark.episodes[i].task == made.benchmark.find_task(kBase)) made.events.told[i]->counts.pop_back();
   }
   const Benchmark told = benchmark_of_events(made.benchmark, made.events);
   const int first = made.benchmark.episodes[0].task;

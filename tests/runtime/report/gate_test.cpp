@@ -171,8 +171,8 @@ TEST_CASE("the gate errs as stated over made-up regressions and null cases") {
               e.policy = policy;
               e.task = t;
               e.start = s;
-              e.row.seed = seed;
-              e.truths = {share(bits) < (policy == 0 ? before - kind.drop : before)};
+              e.seed = seed;
+              e.truths.set(0, share(bits) < (policy == 0 ? before - kind.drop : before));
               benchmark.episodes.push_back(e);
             }
           }

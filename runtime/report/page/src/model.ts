@@ -18,9 +18,10 @@ export interface Task {
   metrics: number[]; confounded?: string | null; unpaired?: string; allowed?: { word: string; reason: string }[];
   starts?: number[][][]; rule?: { file: string; line: number; text: string };
 }
+export type Column = ArrayLike<number>;
 export interface Episodes {
-  count: number; policy: number[]; task: number[]; start: number[]; seed: number[]; bits: number[]; more_bits?: number[][]; steps: number[];
-  reason: number[]; prompt: number[]; video?: number[]; remarks?: Record<string, number>; numbers?: Record<string, (number | null)[]>;
+  count: number; policy: Column; task: Column; start: Column; seed: Column; bits: Column; more_bits?: Column[]; steps: Column;
+  reason: Column; prompt: Column; video?: Column; remarks?: Record<string, number>; numbers?: Record<string, (number | null)[]>;
 }
 // A number holds 52 of an episode's truths exactly.
 export function isTrue(e: Episodes, row: number, m: number): boolean {
@@ -96,6 +97,30 @@ function parsed(id: string): unknown {
   return text ? JSON.parse(text) : {};
 }
 
+type Packed = { runs: number[] } | { from: number; width: number; bytes: string };
+
+// A column as it stands in a page of many episodes: PAGE_DATA.md.
+function unpacked(column: Column | Packed, count: number): Column {
+  if ("runs" in column) {
+    const values = new Float64Array(count);
+    for (let i = 0, at = 0; i < column.runs.length; i += 2) values.fill(column.runs[i]!, at, at += column.runs[i + 1]!);
+    return values;
+  }
+  if (!("bytes" in column)) return column;
+  const text = atob(column.bytes), values = new Float64Array(count);
+  for (let i = 0; i < count; ++i) {
+    let value = column.from;
+    for (let k = 0; k < column.width; ++k) value += text.charCodeAt(i * column.width + k) * 256 ** k;
+    values[i] = value;
+  }
+  return values;
+}
+
+function unpackEpisodes(e: Episodes): void {
+  for (const name of ["policy", "task", "start", "seed", "bits", "steps", "reason", "prompt", "video"] as const) if (e[name]) e[name] = unpacked(e[name]!, e.count);
+  if (e.more_bits) e.more_bits = e.more_bits.map((column) => unpacked(column, e.count));
+}
+
 const kNoEpisodes: Episodes = { count: 0, policy: [], task: [], start: [], seed: [], bits: [], steps: [], reason: [], prompt: [] };
 
 // "pi0 and expert on intact", "6 policies on intact".
@@ -117,6 +142,7 @@ export function readData(): Data {
   };
   for (const [key, value] of Object.entries(data)) if (value !== null) (full as unknown as Record<string, unknown>)[key] = value;
   full.title ||= ownTitle(full);
+  unpackEpisodes(full.episodes);
   // Labels stand at the head of columns.
   const capital = (label: string): string => label.charAt(0).toUpperCase() + label.slice(1);
   for (const entry of [...full.metrics, ...full.categories]) entry.label = capital(entry.label);

@@ -145,7 +145,7 @@ async function checkInert(page) {
 const kCases = {
   // Six policies with 3,640 episodes each.
   async large() {
-    const { page, ready } = await open(written("large.html", { policies: 6, starts: 26, seeds: [1, 2, 3, 4, 5] }));
+    const { page, ready } = await open(written("large.html", { policies: 6, starts: 26, seeds: [1, 2, 3, 4, 5], packs: true }));
     console.log(`6 policies, 21,840 episodes: complete after ${(ready / 1000).toFixed(2)} s`);
     expect(ready < 15000, `the page needed ${ready} ms`);
     await checkPanels(page);

@@ -97,8 +97,19 @@ function makeTasks() {
 const kSkill = [["expert", "ceiling", 1, 1], ["null", "floor", 0, 0], ["noisy:0.01", "probe", 0.97, 0.6], ["reach", "probe", 0.99, 0],
   ["wrong", "probe", 0.05, 0], ["random", "random", 0.06, 0.01]];
 
-// {data, timelines, whys} as objects. Options: policies, starts, seeds, hostile, only ("none" | "invalid" | "partial").
-export function sample({ policies = 6, starts = 24, seeds = [42], hostile = false, only = "" } = {}) {
+// A column as it stands in a page of many episodes.
+function packed(column) {
+  const runs = [];
+  for (const value of column) if (runs.length && runs.at(-2) === value) ++runs[runs.length - 1]; else runs.push(value, 1);
+  if (8 * runs.length <= column.length) return { runs };
+  const from = column.reduce((a, b) => Math.min(a, b)), span = column.reduce((a, b) => Math.max(a, b)) - from, width = span < 256 ? 1 : span < 65536 ? 2 : 4;
+  const bytes = Buffer.alloc(column.length * width);
+  column.forEach((value, i) => bytes.writeUIntLE(value - from, i * width, width));
+  return { from, width, bytes: bytes.toString("base64") };
+}
+
+// {data, timelines, whys} as objects. Options: policies, starts, seeds, hostile, packs, only ("none" | "invalid" | "partial").
+export function sample({ policies = 6, starts = 24, seeds = [42], hostile = false, packs = false, only = "" } = {}) {
   const random = generator(policies * 1000 + starts);
   const tasks = makeTasks();
   const metrics = [["success", "Success", 1], ["intention", "Intention", 1], ["grasp", "Grasp", 1], ["moved", "Moved", 0], ["wrong", "Wrong object", -1]]
@@ -264,6 +275,7 @@ export function sample({ policies = 6, starts = 24, seeds = [42], hostile = fals
   const timelines = { every: 2, bodies: tasks.map((t) => [objects[t.source].name, objects[t.target].name, ...t.distractors.map((d) => objects[d].name),
     ...Array(2 - t.distractors.length).fill(""), "gripper"]), events: told.map(({ label, subgoal }) => [label, subgoal ? 1 : 0]),
     e: lines.map((line) => (line ? `${line};e0:31.0,44.0;e1:33.0.1;e3:9.0;e4:14.0` : line)) };
+  if (packs) for (const name of Object.keys(episodes)) if (Array.isArray(episodes[name])) episodes[name] = packed(episodes[name]);
   return { data, timelines, whys };
 }
 

@@ -1,0 +1,228 @@
+#include "runtime/follow/follow.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ctime>
+
+#include "runtime/base/digit_groups.h"
+#include "runtime/base/paths.h"
+#include "runtime/base/percent.h"
+#include "runtime/base/printable.h"
+#include "runtime/base/shell_word.h"
+#include "runtime/store/chosen.h"
+#include "runtime/store/folder_lock.h"
+#include "runtime/store/not_attempted.h"
+#include "runtime/store/results.h"
+#include "runtime/store/store.h"
+
+namespace probe::follow {
+namespace {
+
+constexpr std::size_t kNewest = 8;      // failures that are told
+constexpr double kPaceOver = 600;       // s
+constexpr std::size_t kLongestWhy = 160;  // characters
+
+// Time and size of a database; empty: it is not there.
+std::string stamp_of(const std::string& path) {
+  struct stat file {};
+  if (::stat(path.c_str(), &file) != 0) return "";
+  return fmt::format("{}.{} {}", file.st_mtim.tv_sec, file.st_mtim.tv_nsec, file.st_size);
+}
+
+// "3-of-64": 64; 0: it is no shard's name.
+int shards_of(const std::string& name) {
+  const auto at = name.find("-of-");
+  int shards = 0;
+  if (at == name.npos) return 0;
+  const char* end = name.data() + name.size();
+  const auto read = std::from_chars(name.data() + at + 4, end, shards);
+  return read.ec == std::errc() && read.ptr == end ? shards : 0;
+}
+
+}  // namespace
+
+std::optional<double> Seen::left_s() const {
+  if (!chosen || per_s <= 0) return std::nullopt;
+  return static_cast<double>(std::max<std::int64_t>(0, *chosen - rows)) / per_s;
+}
+
+void Following::add_failure(const std::string& dir, store::EpisodeKey key, std::string why,
+                            const std::string& trace) {
+  if (!known_.insert(dir + "\n" + store::file_stem(key)).second) return;
+  struct stat file {};
+  const double ended = ::stat(trace.c_str(), &file) == 0
+                           ? static_cast<double>(file.st_mtim.tv_sec) +
+                                 static_cast<double>(file.st_mtim.tv_nsec) * 1e-9
+                           : 0;
+  const auto at = std::ranges::find_if(
+      newest_, [&](const Failure& other) { return other.ended_s < ended; });
+  if (at == newest_.end() && newest_.size() >= kNewest) return;
+  newest_.insert(at, {dir, std::move(key), std::move(why), ended});
+  if (newest_.size() > kNewest) newest_.pop_back();
+}
+
+Status Following::read(const std::string& dir, Folder& folder) {
+  folder = {folder.stamp, 0, 0, 0, {}};
+  return store::for_each_row(dir, [&](store::ResultRow&& row) -> Status {
+    ++folder.rows;
+    if (store::is_not_attempted(row)) {
+      ++folder.not_attempted;
+      return {};
+    }
+    if (row.invalid) {
+      ++folder.invalid;
+      add_failure(dir, store::key_of(row), "invalid: " + *row.invalid, row.trace);
+      return {};
+    }
+    for (const store::MetricValue& metric : row.metrics) {
+      if (!metric.is_bool) continue;
+      auto at = std::ranges::find(folder.rates, metric.name,
+                                  &std::pair<std::string, stats::Count>::first);
+      if (at == folder.rates.end())
+        at = folder.rates.insert(at, {metric.name, stats::Count{0, 0}});
+      at->second.k += metric.value != 0 ? 1 : 0;
+      ++at->second.n;
+      if (metric.name == "success" && metric.value == 0)
+        add_failure(dir, store::key_of(row), fmt::format("no success in {} steps", row.steps),
+                    row.trace);
+    }
+    return {};
+  });
+}
+
+Result<Seen> Following::look(double now) {
+  Seen seen;
+  seen.dir = dir_;
+  std::vector<std::string> dirs;
+  if (const auto shards = list_folder(dir_ + "/shards")) {
+    for (const std::string& name : *shards) {
+      if (shards_of(name) == 0) continue;
+      seen.shards = std::max(seen.shards, shards_of(name));
+      dirs.push_back(dir_ + "/shards/" + name);
+    }
+  }
+  if (dirs.empty()) dirs.push_back(dir_);
+  std::int64_t chosen = 0;
+  bool knows_all = true;
+  for (const std::string& dir : dirs) {
+    Folder& folder = folders_[dir];
+    const std::string stamp = stamp_of(dir + "/results.sqlite");
+    seen.is_written = seen.is_written || store::FolderLock::is_taken(dir);
+    if (stamp.empty()) continue;
+    ++seen.begun;
+    if (stamp != folder.stamp) {
+      PROBE_ASSIGN(const auto record, store::find_run_record(dir));
+      if (!record) continue;  // just being made
+      PROBE_TRY(read(dir, folder));
+      folder.stamp = stamp;
+    }
+    seen.rows += folder.rows;
+    seen.invalid += folder.invalid;
+    seen.not_attempted += folder.not_attempted;
+    for (const auto& [name, count] : folder.rates) {
+      auto at = std::ranges::find(seen.rates, name, &std::pair<std::string, stats::Count>::first);
+      if (at == seen.rates.end()) at = seen.rates.insert(at, {name, stats::Count{0, 0}});
+      at->second.k += count.k;
+      at->second.n += count.n;
+    }
+    const auto of_folder = store::read_chosen(dir);
+    knows_all = knows_all && of_folder;
+    chosen += of_folder.value_or(0);
+  }
+  if (knows_all && seen.begun > 0) {
+    seen.is_about = seen.begun < seen.shards;
+    seen.chosen = seen.is_about ? chosen * seen.shards / seen.begun : chosen;
+  }
+  if (seen.shards == 0) seen.begun = 0;
+  seen.newest = newest_;
+  pace_.push_back({now, seen.rows});
+  while (pace_.size() > 2 && now - pace_[1].first > kPaceOver) pace_.pop_front();
+  const auto& [first, before] = pace_.front();
+  if (now > first && seen.rows > before)
+    seen.per_s = static_cast<double>(seen.rows - before) / (now - first);
+  return seen;
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long long>(std::llround(std::max(0.0, seconds)));
+  if (whole < 100) return fmt::format("{} s", whole);
+  const long long minutes = (whole + 30) / 60;
+  if (minutes < 100) return fmt::format("{} min", minutes);
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+std::vector<std::string> to_lines(const Seen& seen) {
+  const auto groups = [](std::int64_t n) { return digit_groups(static_cast<std::size_t>(n)); };
+  std::string line = seen.dir + ": " + groups(seen.rows);
+  if (seen.chosen) line += fmt::format(" of {}{}", seen.is_about ? "about " : "", groups(*seen.chosen));
+  line += " episodes";
+  if (seen.shards > 0 && seen.begun < seen.shards)
+    line += fmt::format(", {} of {} shards begun", seen.begun, seen.shards);
+  if (seen.not_attempted > 0) line += fmt::format(", {} not attempted", groups(seen.not_attempted));
+  if (seen.invalid > 0) line += fmt::format(", {} invalid", groups(seen.invalid));
+  if (seen.is_done()) {
+    line += ", done";
+  } else if (seen.per_s > 0) {
+    line += fmt::format(", {} a minute", decimal_text(60 * seen.per_s, 1));
+    if (const auto left = seen.left_s()) line += fmt::format(", {} left", duration_text(*left));
+  }
+  std::vector<std::string> lines = {line};
+  for (const auto& [name, count] : seen.rates) {
+    const stats::Interval interval = stats::wilson(count);
+    lines.push_back(fmt::format("  {:<12} {:>9} of {:<9} {:>5} %  [{}]", name, groups(count.k),
+                                groups(count.n), decimal_text(100 * count.rate(), 1),
+                                percent_range(interval.low, interval.high, "-")));
+  }
+  for (const Failure& failure : seen.newest) {
+    const auto ended = static_cast<std::time_t>(failure.ended_s);
+    lines.push_back(fmt::format("  {:%H:%M:%S} {}: {}", fmt::localtime(ended),
+                                printable(store::to_text(failure.key), kLongestWhy),
+                                printable(failure.why, kLongestWhy)));
+    lines.push_back(fmt::format("           vlaprobe why {} {} {} {}", shell_word(failure.dir),
+                                shell_word(failure.key.task), failure.key.episode,
+                                failure.key.seed));
+  }
+  return lines;
+}
+
+Json to_json(const Seen& seen) {
+  Json rates = Json::array(), newest = Json::array();
+  for (const auto& [name, count] : seen.rates) {
+    const stats::Interval interval = stats::wilson(count);
+    rates.push_back({{"name", name},
+                     {"k", count.k},
+                     {"n", count.n},
+                     {"low", interval.low},
+                     {"high", interval.high}});
+  }
+  for (const Failure& failure : seen.newest) {
+    newest.push_back({{"dir", failure.dir},
+                      {"task", failure.key.task},
+                      {"episode", failure.key.episode},
+                      {"seed", failure.key.seed},
+                      {"why", printable(failure.why, kLongestWhy)},
+                      {"ended", failure.ended_s}});
+  }
+  const auto left = seen.left_s();
+  return {{"dir", seen.dir},
+          {"episodes", seen.rows},
+          {"invalid", seen.invalid},
+          {"not_attempted", seen.not_attempted},
+          {"chosen", seen.chosen ? Json(*seen.chosen) : Json()},
+          {"is_about", seen.is_about},
+          {"is_done", seen.is_done()},
+          {"is_written", seen.is_written},
+          {"shards", seen.shards},
+          {"begun", seen.begun},
+          {"per_minute", 60 * seen.per_s},
+          {"left_s", left ? Json(*left) : Json()},
+          {"rates", std::move(rates)},
+          {"newest_failures", std::move(newest)}};
+}
+
+}  // namespace probe::follow
