@@ -46,7 +46,7 @@ Binder Parser::binder() {
   if (clear ||
       (at_word("phrases") && kind_ahead(1) == TokenKind::kIdent && text_ahead(2) == "of")) {
     advance();
-    if (clear) advance();
+    if (clear) expect_word("phrases");
     BinderPhrases phrases;
     phrases.clear = clear;
     phrases.axis = name();
@@ -55,7 +55,7 @@ Binder Parser::binder() {
     out.over = phrases;
   } else if (at_word("templates") && text_ahead(1) == "of") {
     advance();
-    advance();
+    expect_word("of");
     out.over = BinderTemplates{name()};
   } else if (kind() == TokenKind::kIdent && text_ahead(1) == "of" && !at_word("variants")) {
     BinderDistractors others;
@@ -68,12 +68,12 @@ Binder Parser::binder() {
   } else if (const auto declared = declared_pool();
              declared && kind_ahead(1) == TokenKind::kLeftParen) {
     advance();
-    advance();
+    expect(TokenKind::kLeftParen);
     out.over = BinderDeclared{*declared, names()};
     expect(TokenKind::kRightParen);
   } else if ((at_word("objects") || at_word("parts")) && kind_ahead(1) == TokenKind::kLeftParen) {
     advance();
-    advance();
+    expect(TokenKind::kLeftParen);
     out.over = BinderObjects{comma_list([this] { return thing(); })};
     expect(TokenKind::kRightParen);
   } else {

@@ -59,7 +59,7 @@ LayoutStmt Parser::layout_place() {
 LayoutStmt Parser::layout_orient() {
   if (at_word("by") && text_ahead(1) == "rest") {
     advance();
-    advance();
+    expect_word("rest");
     return OrientByRestStmt{};
   }
   OrientStmt out;

@@ -62,7 +62,7 @@ TaskSetId Parser::task_set_operand() {
   }
   if (at_word("variants") && text_ahead(1) == "of") {
     advance();
-    advance();
+    expect_word("of");
     const TaskSetId of = task_set_operand();
     return add(TaskSet{since(begin), TaskSetVariants{of}}, {of});
   }

@@ -453,6 +453,24 @@ TEST_CASE("a newline ends a statement only after a word, number, string or closi
   CHECK(parsed.file().decls.size() == 4);
 }
 
+TEST_CASE("line ends do not count inside the parentheses of what a derive binds") {
+  const Parsed parsed(
+      "derive \"x\" for o in objects (\n a\n , b\n), c in cameras (d\n, e\n) { }");
+  CHECK(parsed.messages() == "");
+  CHECK(parsed.get<DeriveDecl>().binders.size() == 2);
+}
+
+TEST_CASE("two words that are one stand on one line") {
+  for (const std::string text :
+       {"set a = variants\nof b", "derive \"x\" for w in templates\nof f { }",
+        "derive \"x\" for p in clear\nphrases color of source { }",
+        "derive \"x\" for o in objects\n(a, b) { }", "layout l { orient by\nrest }"}) {
+    CHECK_MESSAGE(Parsed(text).messages().find("P0101 found end of line, expected") !=
+                      std::string::npos,
+                  text);
+  }
+}
+
 TEST_CASE("windows line endings and a byte order mark change nothing") {
   const Parsed parsed("\xef\xbb\xbfset a = b\r\nobject c {\r\n  color red\r\n}\r\n");
   CHECK(parsed.messages() == "");
