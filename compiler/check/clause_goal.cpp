@@ -20,6 +20,10 @@ class ClauseGoal {
     for (const Clause& clause : clauses_.all) {
       if (!clause.certain) continue;
       std::optional<std::string> why;
+      if (clause.denied) {
+        if (why = denied_lack(clause); why) return "says \"not " + clause.words + "\" and " + *why;
+        continue;
+      }
       if (clause.does == Does::kPuts && clause.goes) why = put_lack(clause);
       if (!why && (clause.does == Does::kPuts || clause.does == Does::kTakes))
         why = count_lack(clause);
@@ -78,6 +82,17 @@ class ClauseGoal {
     return found;
   }
 
+  // Other objects that success measures it against.
+  Things measured_against(ObjectId thing) const {
+    Things found = wanted_at(thing);
+    for (const auto& [two, one] : goal_.bearings) {
+      if (!one.asked || (two.first != thing && two.second != thing)) continue;
+      const ObjectId other = two.first == thing ? two.second : two.first;
+      if (task_.is_object(other)) found.insert(other);
+    }
+    return found;
+  }
+
   // "asks `on_top_of` of `cube` and `plate`", by the predicate that is of the fewest things.
   std::string asks(ObjectId thing, ObjectId place) const {
     const Goal::Asked* least = nullptr;
@@ -90,12 +105,12 @@ class ClauseGoal {
         least = &asked;
     }
     const std::string both = " of " + name(thing) + " and " + name(place);
-    if (least == nullptr) return "measures how near " + name(thing) + " is to " + name(place);
+    if (least == nullptr) return "measures " + name(thing) + " against " + name(place);
     return "asks `" + model_.predicates[least->predicate].name + "`" + both;
   }
 
   std::optional<std::string> put_lack(const Clause& clause) const {
-    if (goal_.speaks_of_all) return std::nullopt;
+    if (goal_.asks_of_all) return std::nullopt;
     for (const Clause::What& what : clause.what) {
       std::vector<ObjectId> moved;
       for (const ObjectId id : what.of) {
@@ -122,6 +137,7 @@ class ClauseGoal {
       }
     }
     if (is_measured) {
+      if (auto why = height_lack(moved, clause)) return why;
       // Not there is all that it wants.
       if (all.near || !all.apart || (all.other && all.asked) || moved.size() != 1 ||
           clause.where.empty())
@@ -133,13 +149,48 @@ class ClauseGoal {
     if (!speaks) return unspoken(moved, clause);
     if (moved.size() != 1) return std::nullopt;
     const ObjectId thing = moved.front();
-    for (const ObjectId place : wanted_at(thing)) {
+    const bool is_beside = clause.lies == Clause::Where::kBeside;
+    for (const ObjectId place : is_beside ? measured_against(thing) : wanted_at(thing)) {
       const bool may_be_there = std::any_of(
           clause.where.begin(), clause.where.end(),
           [&](ObjectId said) { return is_same_place(said, place) || lies_on(said, place); });
       if (!may_be_there) return "success " + asks(thing, place);
     }
     return std::nullopt;
+  }
+
+  // "do not put the cube on the tray" of which success is that it is there.
+  std::optional<std::string> denied_lack(const Clause& clause) const {
+    if (clause.what.size() != 1 || clause.what[0].of.size() != 1) return std::nullopt;
+    const ObjectId thing = *clause.what[0].of.begin();
+    if (clause.does == Does::kPuts && clause.goes && clause.where.size() == 1) {
+      const auto one = bearing(thing, *clause.where.begin());
+      if (one && one->near && one->asked && !one->apart)
+        return "success wants " + name(thing) + " to be there";
+    }
+    if (clause.does != Does::kOpens && clause.does != Does::kCloses) return std::nullopt;
+    const auto way = goal_.ways.find(thing);
+    if (way == goal_.ways.end() || way->second.other) return std::nullopt;
+    const bool closes = clause.does == Does::kCloses;
+    if (!(closes ? way->second.closes && !way->second.opens
+                 : way->second.opens && !way->second.closes))
+      return std::nullopt;
+    return "success is that " + name(thing) + " has moved at " + (closes ? "most" : "least") +
+           " so far";
+  }
+
+  // "put the plate on the carrot" of which success wants the carrot to be higher.
+  std::optional<std::string> height_lack(const std::vector<ObjectId>& moved,
+                                         const Clause& clause) const {
+    const bool is_on = clause.lies == Clause::Where::kOn;
+    if (moved.size() != 1 || clause.where.size() != 1 ||
+        (!is_on && clause.lies != Clause::Where::kUnder))
+      return std::nullopt;
+    const ObjectId thing = moved.front(), place = *clause.where.begin();
+    const ObjectId high = is_on ? thing : place, low = is_on ? place : thing;
+    if (!goal_.above.contains({low, high}) || goal_.above.contains({high, low}))
+      return std::nullopt;
+    return "success wants " + name(low) + " to be higher than " + name(high);
   }
 
   // Success is about other things.

@@ -122,6 +122,13 @@ class ClauseReader {
   Clauses run() {
     while (at_ < words_.size()) {
       const Match word = match(at_);
+      if (denies_first(word)) {
+        at_ += word.length;
+        clause(match(at_));
+        out_.all.back().denied = true;
+        stop();
+        break;
+      }
       if (word.is == WordIs::kSpares || word.is == WordIs::kDenies) {
         const bool is_inside = word.is == WordIs::kDenies && at_ > 0 && !is_apart(at_);
         if (is_inside && !out_.all.empty()) out_.all.back().certain = false;
@@ -158,6 +165,13 @@ class ClauseReader {
       if (k == wanted.size()) return {one->second.is, k};
     }
     return {};
+  }
+  // "Do not put the cup ..".
+  bool denies_first(const Match& word) const {
+    if (word.is != WordIs::kDenies || !out_.all.empty() || !is_verb(match(at_ + word.length).is))
+      return false;
+    const std::string& text = words_[at_].text;
+    return text == "not" || text == "don't" || text == "never";
   }
   static bool is_verb(WordIs is) { return is >= WordIs::kPuts && is <= WordIs::kDoes; }
   static bool is_place(WordIs is) { return is >= WordIs::kTo && is <= WordIs::kWith; }
@@ -400,6 +414,7 @@ class ClauseReader {
 
   // "On the plate". False where it is not known what that is.
   bool place(const Match& word, Clause& clause, Things& where) {
+    const std::size_t at = at_;
     const auto to = nouns(at_ + word.length, true);
     if (!to) return inside(word, clause, where);
     at_ = to->end;
@@ -414,9 +429,23 @@ class ClauseReader {
       unsure_ = true;
       return true;
     }
+    const Clause::Where lies = lies_as(word, at);
+    clause.lies = clause.goes && clause.lies != lies ? Clause::Where::kMixed : lies;
     clause.goes = true;
     for (const Clause::What& one : to->what) where.insert(one.of.begin(), one.of.end());
     return true;
+  }
+
+  Clause::Where lies_as(const Match& word, std::size_t at) const {
+    if (word.is == WordIs::kBeside) return Clause::Where::kBeside;
+    constexpr auto kOn =
+        std::to_array<std::string_view>({"on", "upon", "atop", "onto", "over", "above"});
+    constexpr auto kUnder = std::to_array<std::string_view>({"under", "below"});
+    const std::string& text = words_[at].text;
+    if (word.is == WordIs::kTo && text != "onto") return Clause::Where::kElsewhere;
+    if (std::ranges::find(kOn, text) != kOn.end()) return Clause::Where::kOn;
+    if (std::ranges::find(kUnder, text) != kUnder.end()) return Clause::Where::kUnder;
+    return Clause::Where::kElsewhere;
   }
 
   // "Open the drawer and put the cup inside": in something that was spoken of.

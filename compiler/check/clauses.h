@@ -25,8 +25,13 @@ struct Clause {
   };
   std::vector<What> what;
   Things where;         // where it goes, by all that the words may mean
+  // What is said of those places: it lies on or over them, under them, or at their sides; several of
+  // one clause are mixed.
+  enum class Where : std::uint8_t { kElsewhere, kOn, kUnder, kBeside, kMixed } lies =
+      Where::kElsewhere;
   bool goes = false;    // it is said where to, in words that are known
   bool certain = true;  // all of its words were understood
+  bool denied = false;  // "do not put ..": the first of an instruction, and alone
   std::string words;    // "put the red block on the tray"
 };
 

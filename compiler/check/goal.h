@@ -53,6 +53,10 @@ struct Goal {
   // a set that names nothing.
   Things spoken;
   bool speaks_of_all = false;
+  // Something that has to hold of things that are not named: what is said of one may be meant.
+  bool asks_of_all = false;
+  // Of two things that the first is higher, whatever their sizes.
+  std::set<std::pair<ObjectId, ObjectId>> above;
 };
 
 // In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.

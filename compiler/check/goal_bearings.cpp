@@ -58,6 +58,8 @@ class BearingReader : GoalThings {
     Given inner = given;
     const Things among = things_in(node.set, given);
     if (among.empty()) {
+      goal_.asks_of_all =
+          goal_.asks_of_all || (sense != Sense::kAgainst && may_hold_things(node.set));
       bind(inner, node.a, {});
       condition(node.args[0], inner, sense);
     }
@@ -65,6 +67,30 @@ class BearingReader : GoalThings {
       bind(inner, node.a, {one});
       condition(node.args[0], inner, sense);
     }
+  }
+
+  // Whether anything but the robot and what carries the scene may be in it.
+  bool may_hold_things(SetRef ref) const {
+    const SetNode& set = model_.exprs.sets[ref];
+    switch (set.op) {
+      case SetOp::kFingers:
+      case SetOp::kLinks:
+        return false;
+      case SetOp::kUnion:
+        return may_hold_things(set.left) || may_hold_things(set.right);
+      case SetOp::kIntersection:
+        return may_hold_things(set.left) && may_hold_things(set.right);
+      case SetOp::kDifference:
+        return may_hold_things(set.left) && !takes_objects(ref);
+      default:
+        return true;
+    }
+  }
+  // `bodies - objects`, or that and more.
+  bool takes_objects(SetRef ref) const {
+    const SetNode& set = model_.exprs.sets[ref];
+    return set.op == SetOp::kDifference &&
+           (model_.exprs.sets[set.right].op == SetOp::kObjects || takes_objects(set.left));
   }
 
   template <typename Look>
@@ -76,6 +102,12 @@ class BearingReader : GoalThings {
   // `a < b` is so where a is small and b is large.
   void compare(const ExprNode& node, const Given& given, Sense sense) {
     is_asked_ = sense != Sense::kAgainst;
+    if (sense == Sense::kFor) {
+      const ObjectId low = whose_height(node.args[0], given),
+                     high = whose_height(node.args[1], given);
+      if (low != ObjectId::kNone && high != ObjectId::kNone && low != high)
+        goal_.above.insert({high, low});
+    }
     decided_.clear();
     number(node.args[0], given, sense);
     number(node.args[1], given, against(sense));
@@ -89,6 +121,19 @@ class BearingReader : GoalThings {
         bearing.asked = bearing.asked || sense != Sense::kAgainst;
       }
     }
+  }
+
+  // Where a number is the height of one thing and nothing else.
+  ObjectId whose_height(ExprRef ref, const Given& given) const {
+    const ExprNode& node = at(ref);
+    if (node.op != ExprOp::kMeasure ||
+        (node.measure != Measure::kHeight && node.measure != Measure::kZ))
+      return ObjectId::kNone;
+    const ExprNode& point = at(node.args[0]);
+    const bool is_of_body = point.op != ExprOp::kMeasure || point.measure == Measure::kPosition ||
+                            point.measure == Measure::kOrigin;
+    const Things of = things(node.args[0], given);
+    return is_of_body && of.size() == 1 ? *of.begin() : ObjectId::kNone;
   }
 
   void number(ExprRef ref, const Given& given, Sense small) {

@@ -124,6 +124,66 @@ TEST_CASE("what is put somewhere is something that success speaks of") {
                       "open the drawer, take {the source} out and put it on {the target}") == "");
 }
 
+TEST_CASE("what else must not be touched hides nothing of what goes where") {
+  for (const std::string more :
+       {"no f in fingers: impulse(f, source) > 1e-6Ns",
+        "no x in bodies - {source, target} - links: impulse(source, x) > 1e-6Ns",
+        "any x in bodies - objects - links: impulse(target, x) > 1e-6Ns",
+        "not any d in distractors: moved_xy(d) > 3cm"}) {
+    CAPTURE(more);
+    const std::string goal = "(over(source, target) and " + more + ")";
+    CHECK(told_of_one(goal, "put the cube on the towel") ==
+          "error[P1202]: `t` says \"put the cube on the towel\" and success asks `over` of `cube` "
+          "and `tray`");
+    CHECK(told_of_one(goal, "put the cube on the tray") == "");
+    CHECK(told_of_one(goal, "put the towel on the tray") ==
+          "error[P1202]: `t` says \"put the towel on the tray\" and success asks nothing of "
+          "`towel`");
+  }
+  CHECK(told_of_one("(all x in objects - {target}: over(x, target))",
+                    "put the towel on the tray") == "");
+}
+
+TEST_CASE("what is put on another is not under it in success") {
+  const std::string wrong =
+      "error[P1202]: `t` says \"put the tray on the cube\" and success wants "
+      "`cube` to be higher than `tray`";
+  CHECK(told_of_one("over(source, target)", "put the tray on the cube") == wrong);
+  CHECK(told_of_one("over(source, target)", "put {the target} on {the source}") == wrong);
+  CHECK(told_of_one("over(source, target)", "put the cube under the tray") ==
+        "error[P1202]: `t` says \"put the cube under the tray\" and success wants `cube` to be "
+        "higher than `tray`");
+  CHECK(told_of_one("over(target, source)", "put the cube under the tray") == "");
+  CHECK(told_of_one("(distance_xy(source, target) < 5cm and height(source) < height(target) + 9cm)",
+                    "put the cube on the tray") == "");
+}
+
+TEST_CASE("what an instruction forbids is not what success wants") {
+  for (const std::string no : {"do not", "don't", "never", "please do not"}) {
+    CAPTURE(no);
+    CHECK(told_of_one("over(source, target)", no + " put the cube on the tray") ==
+          "error[P1202]: `t` says \"not put the cube on the tray\" and success wants `cube` to be "
+          "there");
+    CHECK(told_of_one("not over(source, target)", no + " put the cube on the tray") == "");
+    CHECK(told_of_one("over(source, target)",
+                      no + " put the cube on the towel, put it on the tray") == "");
+  }
+  CHECK(
+      told_of_chest("far_open(chest.drawer)", "do not open the drawer") ==
+      "error[P1202]: `t` says \"not open the drawer\" and success is that `chest.drawer` has moved "
+      "at least so far");
+  CHECK(told_of_chest("shut(chest.drawer)", "do not open the drawer") == "");
+}
+
+TEST_CASE("what goes beside something is measured against it") {
+  const std::string goal = "view_x(source) < view_x(target) - 2cm";
+  CHECK(told_of_one(goal, "put the cube to the left of the towel") ==
+        "error[P1202]: `t` says \"put the cube to the left of the towel\" and success measures "
+        "`cube` against `tray`");
+  CHECK(told_of_one(goal, "put the cube to the left of the tray") == "");
+  CHECK(told_of_one(goal, "put the cube to the left of the tray, beside the towel") == "");
+}
+
 TEST_CASE("words for two are not judged by three") {
   const std::string three = "green_cube, yellow_cube, red_cube";
   CHECK(told_of_three("put the green and the yellow cube on the tray", three)
