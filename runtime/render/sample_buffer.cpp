@@ -271,16 +271,18 @@ void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnC
                   std::min(y1, height_ - 1)};
   const int left_tile = in.left >> kTileShift, right_tile = in.right >> kTileShift;
   const int top_tile = in.top >> kTileShift, bottom_tile = in.bottom >> kTileShift;
-  constexpr int kFew = 2;
-  if (is_looked_at_ && right_tile - left_tile <= kFew && bottom_tile - top_tile <= kFew) {
+  if (is_looked_at_) {
     const float nearest =
         std::max({a.nearness, b.nearness, c.nearness}) * static_cast<float>(kBehind);
-    bool is_hidden = true;
-    for (int row = top_tile; row <= bottom_tile; ++row) {
-      for (int column = left_tile; column <= right_tile; ++column)
-        is_hidden = is_hidden && nearest < farthest_[tile_at(column, row)];
-    }
-    if (is_hidden) return;
+    const auto is_hidden = [&] {
+      for (int row = top_tile; row <= bottom_tile; ++row) {
+        for (int column = left_tile; column <= right_tile; ++column) {
+          if (!(nearest < farthest_[tile_at(column, row)])) return false;
+        }
+      }
+      return true;
+    };
+    if (is_hidden()) return;
   }
   if (is_looked_at_) note(in.left, in.right, in.top, in.bottom);
   constexpr int kSmall = 64;

@@ -55,18 +55,27 @@ void SeenFaces::find(const PlacedMeshes& meshes) {
     asked_[i].triangle = id - parts[at].first_id;
     __builtin_prefetch(&parts[at].part->indices[3 * std::size_t{asked_[i].triangle}]);
   }
+  const std::uint32_t* indices = nullptr;  // of the last one's part
+  const VertexCorner* corners = nullptr;
+  std::size_t first_corner = 0;
+  LitPart* lit = nullptr;
   for (std::size_t i = 1; i < count; ++i) {
     Asked& asked = asked_[i];
-    const PlacedMeshes::PlacedPart& placed = parts[asked.part];
-    LitPart& lit = lit_[asked.part];
-    if (lit.corner.empty()) lit_parts_.push_back(asked.part);
+    if (i == 1 || asked.part != asked_[i - 1].part) {
+      const PlacedMeshes::PlacedPart& placed = parts[asked.part];
+      indices = placed.part->indices.data();
+      corners = placed.part->corners.data();
+      first_corner = placed.first_corner;
+      lit = &lit_[asked.part];
+      if (lit->corner.empty()) lit_parts_.push_back(asked.part);
+    }
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t corner = placed.part->indices[3 * std::size_t{asked.triangle} + k];
-      std::uint32_t& slot = corner_slots_[(placed.first_corner + corner) % kCornerSlots];
-      if (slot >= lit.corner.size() || lit.corner[slot] != corner) {
-        slot = static_cast<std::uint32_t>(lit.corner.size());
-        lit.corner.push_back(corner);
-        __builtin_prefetch(&placed.part->corners[corner]);
+      const std::uint32_t corner = indices[3 * std::size_t{asked.triangle} + k];
+      std::uint32_t& slot = corner_slots_[(first_corner + corner) % kCornerSlots];
+      if (slot >= lit->corner.size() || lit->corner[slot] != corner) {
+        slot = static_cast<std::uint32_t>(lit->corner.size());
+        lit->corner.push_back(corner);
+        __builtin_prefetch(corners + corner);
       }
       asked.corner[k] = corner;
       asked.lit[k] = slot;

@@ -29,16 +29,8 @@ class SeenFragments {
 
   SeenFragments() : arrays_(std::make_unique<Arrays>()) {}
 
-  void clear() { count_ = 0; }
-  std::size_t size() const { return count_; }
-  void add(std::uint32_t face, int samples, float across, float down) {
-    Arrays& a = *arrays_;
-    a.face[count_] = face;
-    a.samples[count_] = samples;
-    a.across[count_] = across;
-    a.down[count_] = down;
-    ++count_;
-  }
+  // How many of the arrays' first say a face, samples and a place.
+  void resize(std::size_t count) { count_ = count; }
   // Colours times textures, 0 .. 255, and depths. A step of a pixel goes so far across and down.
   void light(const SeenFaces& faces, float step_across, float step_down);
   // Rounds colours to bytes.

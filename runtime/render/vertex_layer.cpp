@@ -1,7 +1,8 @@
 #include "runtime/render/vertex_layer.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <limits>
 
 namespace probe::render {
 namespace {
@@ -11,9 +12,10 @@ constexpr std::size_t kTogether = 512;
 static_assert(4 * kTogether <= SeenFragments::kMost);
 
 bool is_inside(const SeenFace& face, float across, float down) {
-  return std::ranges::all_of(face.edge, [&](const Rgb& edge) {
-    return (edge[0] * across + edge[1] * down + edge[2]) * face.volume >= 0;
-  });
+  bool is_in = true;
+  for (const Rgb& edge : face.edge)
+    is_in = is_in && (edge[0] * across + edge[1] * down + edge[2]) * face.volume >= 0;
+  return is_in;
 }
 
 }  // namespace
@@ -46,8 +48,9 @@ void VertexLayer::show_own(std::span<const PixelAt> pixels, const PlacedMeshes::
 
 void VertexLayer::find_fragments(std::span<const PixelAt> pixels) {
   faces_.begin(meshes_);
-  fragments_.clear();
-  ends_.clear();
+  ends_.resize(pixels.size());
+  auto& arrays = fragments_.arrays();
+  std::size_t count = 0;
   std::uint32_t last = 0, slot = SeenFaces::kNothing;
   const auto slot_of = [&](std::uint32_t id) {
     if (id != last) {
@@ -56,20 +59,30 @@ void VertexLayer::find_fragments(std::span<const PixelAt> pixels) {
     }
     return slot;
   };
-  for (const PixelAt pixel : pixels) {
+  const auto add = [&](std::uint32_t id, int samples, float across, float down) {
+    arrays.face[count] = slot_of(id);
+    arrays.samples[count] = samples;
+    arrays.across[count] = across;
+    arrays.down[count++] = down;
+  };
+  constexpr std::size_t kAhead = 16;  // pixels: a row of a tile
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    const PixelAt pixel = pixels[p];
+    const PixelAt ahead = pixels[std::min(p + kAhead, pixels.size() - 1)];
+    __builtin_prefetch(buffer_.ids(ahead.x, ahead.y));
     const std::uint32_t* ids = buffer_.ids(pixel.x, pixel.y);
     const float across = meshes_.across(pixel.x), down = meshes_.down(pixel.y);
-    if (ids[0] == ids[1] && ids[0] == ids[2] && ids[0] == ids[3]) {
-      fragments_.add(slot_of(ids[0]), 4, across, down);
+    if (((ids[0] ^ ids[1]) | (ids[0] ^ ids[2]) | (ids[0] ^ ids[3])) == 0) {
+      add(ids[0], 4, across, down);
     } else {
       for (int i = 0; i < 4; ++i) {
         if (std::find(ids, ids + i, ids[i]) != ids + i) continue;
-        fragments_.add(slot_of(ids[i]), static_cast<int>(std::count(ids + i, ids + 4, ids[i])),
-                       across, down);
+        add(ids[i], static_cast<int>(std::count(ids + i, ids + 4, ids[i])), across, down);
       }
     }
-    ends_.push_back(static_cast<std::uint32_t>(fragments_.size()));
+    ends_[p] = static_cast<std::uint32_t>(count);
   }
+  fragments_.resize(count);
 }
 
 void VertexLayer::add_reflected(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror& mirror,
@@ -87,11 +100,16 @@ void VertexLayer::add_reflected(std::span<const PixelAt> pixels, const PlacedMes
 
 void VertexLayer::write(std::span<const PixelAt> pixels, Picture& picture) const {
   const auto& arrays = fragments_.arrays();
+  std::uint8_t* const colors = picture.rgb.data();
+  float* const depths = picture.depth.data();
+  std::uint16_t* const bodies = picture.segmentation.data();
   std::size_t first = 0;
+  std::uint32_t last = SeenFaces::kNothing;
+  std::uint16_t body = 0;  // of `last`
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const std::size_t end = ends_[i], at = picture.at(pixels[i].x, pixels[i].y);
     std::size_t middle = first;
-    std::uint8_t* const rgb = &picture.rgb[3 * at];
+    std::uint8_t* const rgb = colors + 3 * at;
     if (end - first == 1) {
       for (std::size_t k = 0; k < 3; ++k) rgb[k] = arrays.byte[k][first];
     } else {
@@ -103,15 +121,19 @@ void VertexLayer::write(std::span<const PixelAt> pixels, Picture& picture) const
       middle = middle_of(first, end);
     }
     first = end;
-    if (arrays.face[middle] == SeenFaces::kNothing) {
-      picture.depth[at] = 0;
-      picture.segmentation[at] = 0;
-      continue;
+    const std::uint32_t face = arrays.face[middle];
+    if (face != last) {
+      last = face;
+      body = faces_[face].body;
     }
+    bodies[at] = body;
     const float depth = arrays.depth[middle];
-    picture.depth[at] =
-        depth > 0 && std::isfinite(depth) ? depth : 1 / *buffer_.nearness(pixels[i].x, pixels[i].y);
-    picture.segmentation[at] = faces_[arrays.face[middle]].body;
+    if (depth > 0 && depth <= std::numeric_limits<float>::max()) {
+      depths[at] = depth;
+    } else {
+      depths[at] =
+          face == SeenFaces::kNothing ? 0 : 1 / *buffer_.nearness(pixels[i].x, pixels[i].y);
+    }
   }
 }
 
@@ -120,32 +142,36 @@ void VertexLayer::write(std::span<const PixelAt> pixels, Picture& picture) const
 // none in a sample that holds the middle, while a table behind it has one in all.
 std::size_t VertexLayer::middle_of(std::size_t first, std::size_t end) const {
   const auto& arrays = fragments_.arrays();
-  const auto body_of = [&](std::size_t f) { return int{faces_[arrays.face[f]].body}; };
-  const auto samples_of = [&](int body) {
+  std::array<const SeenFace*, 4> faces;
+  const std::size_t count = end - first;
+  for (std::size_t f = 0; f < count; ++f) faces[f] = &faces_[arrays.face[first + f]];
+  constexpr int kMost = 3;  // of four samples
+  // Of that body alone; where none has most, of all.
+  bool is_any = true;
+  std::uint16_t wanted = 0;
+  for (std::size_t f = 0; f < count && is_any; ++f) {
     int samples = 0;
-    for (std::size_t f = first; f < end; ++f) samples += body_of(f) == body ? arrays.samples[f] : 0;
-    return samples;
-  };
-  constexpr int kMost = 3, kAny = -1;  // of four samples
-  int wanted = kAny;
-  for (std::size_t f = first; f < end && wanted == kAny; ++f) {
-    if (samples_of(body_of(f)) >= kMost) wanted = body_of(f);
+    for (std::size_t g = 0; g < count; ++g)
+      samples += faces[g]->body == faces[f]->body ? arrays.samples[first + g] : 0;
+    is_any = samples < kMost;
+    wanted = faces[f]->body;
   }
-  std::size_t inside = end, most = first;
+  const auto counts = [&](std::size_t f) { return is_any || faces[f]->body == wanted; };
+  std::size_t inside = count, most = 0;
   float nearest = 0;
-  for (std::size_t f = first; f < end; ++f) {
-    if (wanted != kAny && body_of(f) != wanted) continue;
-    if (wanted != kAny && body_of(most) != wanted) most = f;
-    if (arrays.samples[f] > arrays.samples[most]) most = f;
-    const SeenFace& face = faces_[arrays.face[f]];
-    if (face.id == 0 || !is_inside(face, arrays.across[f], arrays.down[f])) continue;
-    const float nearness = arrays.denominator[f] / face.volume;
-    if (nearness > nearest) {
+  for (std::size_t f = 0; f < count; ++f) {
+    if (!counts(f)) continue;
+    if (!counts(most)) most = f;
+    if (arrays.samples[first + f] > arrays.samples[first + most]) most = f;
+    if (faces[f]->id == 0) continue;
+    const float nearness = arrays.denominator[first + f] / faces[f]->volume;
+    if (nearness > nearest &&
+        is_inside(*faces[f], arrays.across[first + f], arrays.down[first + f])) {
       nearest = nearness;
       inside = f;
     }
   }
-  return inside != end ? inside : most;
+  return first + (inside != count ? inside : most);
 }
 
 }  // namespace probe::render
