@@ -74,6 +74,9 @@ bool Index::is_declared(Kind kind, const Place& place) const {
 }
 
 std::optional<Symbol> Index::symbol(const Place& place) const {
+  // Behind an attribute stands its value, whatever object is called so.
+  if (place.may_be.has(Kind::kValue) && is_declared(Kind::kValue, place))
+    return Symbol{Kind::kValue, std::string(place.text), std::string(place.of), {}};
   for (std::size_t i = 0; i < kKindCount; ++i) {
     const auto kind = static_cast<Kind>(i);
     if (!place.may_be.has(kind)) continue;

@@ -172,7 +172,8 @@ const statements = {
     light: ($) => $.identifier,
     camera: ($) => seq($.identifier, optional(seq('as', field('as', $.identifier)))),
     distractors: ($) => choice(
-        'none', names($), seq(alias('none', $.identifier), on($, ','), names($)), seq(count($), 'of', parens(names($)), 'seed', count($))),
+        'none', names($), seq(alias('none', $.identifier), on($, ','), names($)),
+        seq(count($), 'of', parens(names($)), 'seed', count($))),
     say: ($) => choice($.identifier, $.template),
     refer: ($) => seq(field('role', $.identifier), 'as', field('phrase', $.identifier)),
     pose: ($) => seq($.identifier, poses($)),

@@ -34,10 +34,10 @@ std::string declared_at(const Snapshot& snapshot, const std::string& word, std::
 }  // namespace
 
 TEST_CASE("in texts without a mistake every name stands for something") {
-  for (const std::string name : {"suite/intact.probe", "suite/beyond.probe", "suite/kitchen.probe",
-                           "suite/kitchen_variants.probe", "suite/semantics.probe",
-                           "examples/roles.probe", "examples/drawer.probe",
-                           "examples/put_away.probe", "examples/spatial.probe"}) {
+  for (const std::string name :
+       {"suite/intact.probe", "suite/beyond.probe", "suite/kitchen.probe",
+        "suite/kitchen_variants.probe", "suite/semantics.probe", "examples/roles.probe",
+        "examples/drawer.probe", "examples/put_away.probe", "examples/spatial.probe"}) {
     CAPTURE(name);
     const auto snapshot =
         Snapshot::analysed((fs::path(VLAPROBE_SOURCE_DIR) / name).string(), {}, kSetting);
@@ -59,7 +59,7 @@ TEST_CASE("in texts without a mistake every name stands for something") {
       }
     }
     CAPTURE(first);
-      CHECK(unknown == 0);
+    CHECK(unknown == 0);
   }
 }
 
@@ -78,8 +78,22 @@ TEST_CASE("a name is declared where its kind is, and a variable in its own predi
   CHECK(declared_at(*snapshot, "source", 0).empty());
 }
 
+TEST_CASE(
+    "behind an attribute stands its value, whatever object is called so; behind a relation an "
+    "object") {
+  const auto snapshot = of_text(
+      "attribute color { orange, red }\nobject orange { color orange }\n"
+      "relation left_of(a: object, b: object) \"left of\" = distance(a, b) < 1cm\n"
+      "object other {\n  phrase p appearance \"x\" means color orange\n"
+      "  phrase q spatial \"y\" means left_of orange\n}\n");
+  REQUIRE(snapshot != nullptr);
+  CHECK(declared_at(*snapshot, "means color orange", 12) == "1");
+  CHECK(declared_at(*snapshot, "means left_of orange", 14) == "2");
+}
+
 TEST_CASE("hovers tell what a measure is, what a number measures, and the essay of a mistake") {
-  const auto snapshot = of_text("object mug { density 500 }\npredicate p() = height(source) > 1m\n");
+  const auto snapshot =
+      of_text("object mug { density 500 }\npredicate p() = height(source) > 1m\n");
   const std::string_view text = snapshot->text(snapshot->root());
   std::vector<const Diagnostic*> said;
   for (const Diagnostic& item : snapshot->diagnostics().items()) said.push_back(&item);
