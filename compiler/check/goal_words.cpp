@@ -182,30 +182,6 @@ class Shared {
   std::set<ClauseKey> right_clauses_;
 };
 
-// An instruction that says the opposite of what success is, or another relation alone.
-bool says_other_relation(const Model& model, const Task& task, Shared& shared, Reporter& reporter) {
-  const std::vector<ExprRef> success = Shared::success_of(task);
-  const std::set<PredicateId>& judged = shared.relations(success);
-  if (judged.empty() || shared.is_known_right(task.say, success)) return false;
-  const std::string& text = shared.text(task.say).folded;
-  const std::string elsewhere = other_relation(model, judged, text);
-  bool is_said = false;
-  for (const PredicateId id : judged) {
-    const Predicate& relation = model.predicates[id];
-    if (says(text, relation)) continue;
-    std::string other = opposite_in(text, relation.words);
-    if (other.empty()) other = elsewhere;
-    if (other.empty()) continue;
-    is_said = true;
-    report_of(reporter, Code::P1202, task, task.say_span,
-              "`" + task.name + "` says \"" + other + "\" and is judged by `" + relation.name + "`")
-        .point("that is said by " + listed(relation.words))
-        .label(relation.span, "declared here");
-  }
-  if (!is_said) shared.keep_right(task.say, success);
-  return is_said;
-}
-
 // Which way success goes: a joint's travel at least so much, or at most.
 struct JointGoal {
   const Model& model;
@@ -258,6 +234,27 @@ class Told {
 
   // Those of the table that are said.
   const std::vector<GoalWords>& words() const { return text_.words; }
+
+  // What goes beside what by the words, where success asks the relation of them the other way
+  // round.
+  std::optional<std::pair<ObjectId, ObjectId>> turned_round(PredicateId relation) {
+    if (model_.predicates[relation].objects != 2) return std::nullopt;
+    for (const Clause& clause : clauses().all) {
+      if (!clause.certain || clause.denied || clause.lies != Clause::Where::kBeside ||
+          clause.what.size() != 1 || clause.what[0].of.size() != 1 || clause.where.size() != 1)
+        continue;
+      const Things& thing = clause.what[0].of;
+      const auto asks = [&](const Things& a, const Things& b) {
+        return std::ranges::any_of(goal().asked, [&](const Goal::Asked& asked) {
+          return asked.predicate == relation && asked.of.size() >= 2 && asked.of[0] == a &&
+                 asked.of[1] == b;
+        });
+      };
+      if (asks(clause.where, thing) && !asks(thing, clause.where))
+        return std::pair(*thing.begin(), *clause.where.begin());
+    }
+    return std::nullopt;
+  }
 
   // Why success is not what the words ask for; none where it is, or nothing is certain.
   std::optional<std::string> lack_of(const GoalWords& one) {
@@ -556,6 +553,45 @@ class Told {
   std::optional<Clauses> clauses_;
 };
 
+// An instruction that says the opposite of what success is, or another relation alone.
+bool says_other_relation(const Model& model, const Task& task, Told& told, Shared& shared,
+                         Reporter& reporter) {
+  const std::vector<ExprRef> success = Shared::success_of(task);
+  const std::set<PredicateId>& judged = shared.relations(success);
+  if (judged.empty() || shared.is_known_right(task.say, success)) return false;
+  const std::string& text = shared.text(task.say).folded;
+  const std::string elsewhere = other_relation(model, judged, text);
+  bool is_said = false, is_of_its_own = false;
+  for (const PredicateId id : judged) {
+    const Predicate& relation = model.predicates[id];
+    // "To the right of B" is `left_of(B, A)`, and "to the left of B" is not.
+    const auto turned = told.turned_round(id);
+    is_of_its_own = is_of_its_own || turned;
+    if (turned && has_opposite(relation.words) && says(text, relation)) {
+      is_said = true;
+      const auto name = [&](ObjectId object) { return "`" + model.objects[object].name + "`"; };
+      report_of(reporter, Code::P1202, task, task.say_span,
+                "`" + task.name + "` says " + listed(relation.words) + " of " +
+                    name(turned->first) + " and is judged by `" + relation.name + "` of " +
+                    name(turned->second) + ", the other way round")
+          .label(relation.span, "declared here");
+      continue;
+    }
+    if (says(text, relation)) continue;
+    std::string other = opposite_in(text, relation.words);
+    if (turned && !other.empty()) continue;
+    if (other.empty()) other = elsewhere;
+    if (other.empty()) continue;
+    is_said = true;
+    report_of(reporter, Code::P1202, task, task.say_span,
+              "`" + task.name + "` says \"" + other + "\" and is judged by `" + relation.name + "`")
+        .point("that is said by " + listed(relation.words))
+        .label(relation.span, "declared here");
+  }
+  if (!is_said && !is_of_its_own) shared.keep_right(task.say, success);
+  return is_said;
+}
+
 // Words of the table that success is not about.
 bool says_other_goal(const Model& model, const Task& task, Told& told, Reporter& reporter) {
   for (const GoalWords& one : told.words()) {
@@ -752,7 +788,7 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     const About about(reporter, task.decl_span);
     Told told(model, task, shared);
     // One thing is said of a task: the others may follow from it.
-    if (says_other_relation(model, task, shared, reporter)) continue;
+    if (says_other_relation(model, task, told, shared, reporter)) continue;
     if (says_other_goal(model, task, told, reporter)) continue;
     if (says_other_part(model, task, shared, reporter)) continue;
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))

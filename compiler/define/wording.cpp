@@ -83,8 +83,7 @@ std::vector<Word> words_of(const Model& model, const Task& task, Form form) {
       // One that fills a role is that role, however the text names it.
       const SlotRef& slot = *part.slot;
       const bool has_role = slot.role != RoleId::kNone;
-      const std::string& name =
-          has_role ? slot.name.text : role_word(model, task, slot.name.text);
+      const std::string& name = has_role ? slot.name.text : role_word(model, task, slot.name.text);
       const bool is_other = has_role && slot.count == syntax::SlotCount::kOther;
       words.push_back({name, true, is_other});
       // Words that count are words of their own. Of a set `{both goods}` and `{the goods}` are
@@ -202,6 +201,16 @@ std::string opposite_in(const std::string& text, const std::vector<std::string>&
     }
   }
   return {};
+}
+
+bool has_opposite(const std::vector<std::string>& words) {
+  return std::ranges::any_of(words, [](const std::string& own) {
+    const std::vector<std::string> parts = literal_words(own);
+    return std::ranges::any_of(parts, [](const std::string& part) {
+      return std::ranges::any_of(
+          kOpposites, [&](const Pair& pair) { return pair.first == part || pair.second == part; });
+    });
+  });
 }
 
 bool has_negation(const Template& say) {

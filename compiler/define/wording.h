@@ -40,6 +40,9 @@ bool contradicts(const Model& model, const Task& a, const Task& b);
 // "right"; empty when there is none.
 std::string opposite_in(const std::string& text, const std::vector<std::string>& words);
 
+// Whether one of these words is of a pair of opposites.
+bool has_opposite(const std::vector<std::string>& words);
+
 // What a template says, word by word, in lower case, without articles and the signs around words;
 // a slot is one word: "{source}", "{avoid towel}".
 std::vector<std::string> sentence_of(const Template& say);

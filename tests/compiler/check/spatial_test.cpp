@@ -161,6 +161,17 @@ TEST_CASE("words say the relation that proves or judges them") {
                 "metrics m { success = at end left_of(source, target) }\n"
                 "task t like red_on_tray { metrics m; say aside }") ==
         "error[P1202]: `t` says \"right\" and is judged by `left_of`");
+  // Of two things it is the other way round.
+  const auto turned = [&](const std::string& side) {
+    return mistake(
+        "metrics m { success = at end left_of(target, source) }\n"
+        "task t like red_on_tray { metrics m; say \"put {the source} to the " +
+        side + " of {the target}\" }");
+  };
+  CHECK(turned("right") == "");
+  CHECK(turned("left") ==
+        "error[P1202]: `t` says \"left\" of `red` and is judged by `left_of` of `tray`, the other "
+        "way round");
 }
 
 TEST_CASE("a layout is cut to the starts in which a phrase is clear, for the baseline too") {
