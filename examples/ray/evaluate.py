@@ -24,7 +24,7 @@ class StandStill:
 def evaluate_shard(plan, out, starts):
     """The given starts of every task."""
     run = vlaprobe.evaluate(StandStill(), plan, name="stand_still", content="1", episodes=starts, out=out, progress=False)
-    return len(run.results)
+    return len(run.results())
 
 
 def main():
@@ -38,7 +38,7 @@ def main():
     given = words.parse_args()
     out = os.path.abspath(given.out)
     plan = os.path.abspath(given.plan)
-    starts = max(task.episodes for task in vlaprobe.load(plan).tasks)
+    starts = max(task.episodes for task in vlaprobe.load(plan).tasks.values())
     cuts = [starts * i // given.shards for i in range(given.shards + 1)]
     parts = [(first, end - 1) for first, end in zip(cuts, cuts[1:]) if end > first]
     folders = [os.path.join(out, "shards", f"{i}-of-{len(parts)}") for i in range(1, len(parts) + 1)]

@@ -129,6 +129,9 @@ double ExactSum::at_least_by_inversion(std::int64_t least) const {
   const double tilt = std::max(
       least_tilt, rising_root([&](double t) { return sums(t).mean - target; }, 0, kLargestTilt));
   const Tilted all = sums(tilt);
+  // No chance is larger than this (Chernoff's bound): where it is nothing, nothing is summed.
+  const double scale = std::exp(all.log_weight - tilt * target);
+  if (scale == 0) return 0;
   const std::int64_t period = quiet_period(all.variance, static_cast<double>(span), tilt);
   struct Group {
     std::vector<double> value, chance;
@@ -178,7 +181,6 @@ double ExactSum::at_least_by_inversion(std::int64_t least) const {
     // The other half are the conjugates.
     total += (j == 0 || 2 * j == period ? 1 : 2) * term.real();
   }
-  const double scale = std::exp(all.log_weight - tilt * target);
   return std::clamp(scale * total / static_cast<double>(period), 0.0, 1.0);
 }
 

@@ -113,6 +113,11 @@ TEST_CASE("a proof is of a row and of its file as it is, and of no other") {
   CHECK(again.find(ProofKey{{9, 9, 9}}) == nullptr);
   CHECK(ProofBook(folder / "elsewhere", plan, cache).find(*key) == nullptr);
   CHECK(ProofBook(folder / "run", plan, "").find(*key) == nullptr);
+  // A home that takes nothing more costs time alone.
+  ProofBook homeless(folder / "run", plan, row.trace + "/proofs");
+  for (int i = 0; i < 2 * static_cast<int>(ProofBook::kWorthKeeping); ++i)
+    homeless.add(ProofKey{{1, static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8)}}, {});
+  homeless.keep();
   for (const auto& file : fs::directory_iterator(cache)) {
     std::string bytes = read_file(file.path().string()).value();
     bytes[bytes.size() - 40] = static_cast<char>(bytes[bytes.size() - 40] ^ 1);
@@ -167,6 +172,37 @@ TEST_CASE("what no row needs is found, and removed when it is asked for") {
   CHECK(fs::exists(task + "/notes.txt"));
   CHECK(read_proven_results(dir)->rows.size() == rows.size());
   CHECK(find_spares(dir)->spares.empty());
+}
+
+TEST_CASE("a merge that was preempted at any point is finished by the same call") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run", whole = folder / "whole";
+  const plan::Plan plan = table_plan(4, 6);
+  make_merged(dir, plan);
+  make_merged(whole, plan);
+  const auto rows = read_results(dir).value();
+  REQUIRE(rows.size() >= 4);
+  const auto key = [&](std::size_t i) {
+    return " where task = '" + rows[i].task + "' and episode = " + std::to_string(rows[i].episode) +
+           " and seed = " + std::to_string(rows[i].seed);
+  };
+  // Traces with their names and without rows; one half copied; one not begun.
+  change_database(dir, "delete from episodes" + key(0));
+  change_database(dir, "delete from episodes" + key(1));
+  change_database(dir, "delete from episodes" + key(2));
+  fs::rename(rows[1].trace, rows[1].trace + ".tmp");
+  fs::resize_file(rows[1].trace + ".tmp", 20);
+  fs::remove(rows[2].trace);
+  const auto merged =
+      merge({.dirs = {dir + "/shards/1-of-2", dir + "/shards/2-of-2"}, .out = dir});
+  REQUIRE_MESSAGE(merged.ok(), to_text(merged.failure()));
+  CHECK(merged->added == 3);
+  const auto now = read_proven_results(dir), wanted = read_proven_results(whole);
+  REQUIRE(now->refused.empty());
+  REQUIRE(now->rows.size() == wanted->rows.size());
+  for (std::size_t i = 0; i < now->rows.size(); ++i)
+    CHECK(now->rows[i].trace_sha256 == wanted->rows[i].trace_sha256);
+  CHECK(!fs::exists(rows[1].trace + ".tmp"));
 }
 
 TEST_CASE("a shard with a row that is not merged stays") {
