@@ -323,7 +323,7 @@ float SampleBuffer::look_at(int column, int row) {
 }
 
 bool SampleBuffer::hides(int left, int right, int top, int bottom, float nearness) {
-  constexpr int kMostTiles = 64;
+  constexpr int kMostTiles = 256;
   const int first = left >> kTileShift, last = right >> kTileShift;
   if ((last - first + 1) * ((bottom >> kTileShift) - (top >> kTileShift) + 1) > kMostTiles)
     return false;
