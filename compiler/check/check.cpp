@@ -17,6 +17,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_starts(model, checked.asset_root, reporter);
   if (reporter.is_stopped()) return;
   check_metrics(model, reporter);
+  if (!reporter.depth.is_immediate) check_begun(model, checked.asset_root, reporter);
   check_expectations(model, reporter);
   check_samples(model, reporter);
   check_photos(model, reporter);

@@ -100,11 +100,7 @@ const lower::Program* Relations::program(const Task& task, std::uint32_t relatio
 InStart::InStart(Relations& relations, const Task& task, const Start& start)
     : relations_(relations), task_(task), scenery_(scenery_of(relations.model_, task)) {
   const Model& model = relations.model_;
-  for (const Start::Placed& placed : start.placed) {
-    const Object& object = model.objects[placed.object];
-    placed_.push_back(
-        placed_body(model.scenes[task.scene], object, relations.centres_.of(object), placed));
-  }
+  placed_ = placed_objects(model, relations.centres_, task, start);
   if (scenery_.body_count <= placed_.size()) return;
   placed_.resize(scenery_.body_count);
   const std::vector<double> joints = joint_starts_of(model, task, start);
@@ -112,6 +108,16 @@ InStart::InStart(Relations& relations, const Task& task, const Start& start)
     const Object& object = model.objects[scenery_.things[i]];
     if (object.of) placed_[scenery_.bodies[i]] = placed_part(model, task, *object.of, joints);
   }
+}
+
+std::vector<lower::PlacedBody> placed_objects(const Model& model, Centres& centres,
+                                              const Task& task, const Start& start) {
+  std::vector<lower::PlacedBody> bodies;
+  for (const Start::Placed& placed : start.placed) {
+    const Object& object = model.objects[placed.object];
+    bodies.push_back(placed_body(model.scenes[task.scene], object, centres.of(object), placed));
+  }
+  return bodies;
 }
 
 Scenery scenery_of(const Model& model, const Task& task) {

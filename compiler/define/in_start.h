@@ -28,6 +28,10 @@ struct Scenery {
 };
 Scenery scenery_of(const Model& model, const Task& task);
 
+// The objects of a task where a start puts them down, as far as that is known before they settle.
+std::vector<lower::PlacedBody> placed_objects(const Model& model, Centres& centres,
+                                              const Task& task, const Start& start);
+
 // Of those, by their bodies: what the rest of a phrase fits, when nothing is said of where they
 // are.
 struct Alike {

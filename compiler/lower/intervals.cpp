@@ -20,6 +20,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // No body is faster (m/s).
 constexpr double kFastest = 1000;
+// What has settled moves less than this (m/s, rad/s; m), and presses what carries it more (N s).
+constexpr double kStill = 2e-3, kSettled = 1e-3, kLeastPress = 1e-5;
 // Of RATIO.
 constexpr double kLeastDivisor = 1e-3;
 // Components of unit vectors, with room for their rounding.
@@ -81,6 +83,10 @@ class Pass {
   // In one start, before anything moves.
   Pass(const Program& program, std::span<const PlacedBody> placed)
       : program_(program), horizon_(1), control_hz_(0), placed_(placed) {}
+
+  // The same, and what else is known before anything moves.
+  Pass(const Program& program, const AtRest& rest)
+      : program_(program), horizon_(1), control_hz_(0), placed_(rest.placed), rest_(&rest) {}
 
   Findings run() {
     for (std::size_t i = 0; i < program_.code.size(); ++i) {
@@ -144,6 +150,7 @@ class Pass {
   // A joint is held at its limits as a contact is: it goes beyond them by less than this (m, rad).
   Known joint(std::uint16_t index) const {
     constexpr double kBeyond = 1e-2;
+    if (rest_ != nullptr && index < rest_->joints.size()) return of(rest_->joints[index]);
     if (index >= room_.joints.size()) return {};
     return number(room_.joints[index].first - kBeyond, room_.joints[index].second + kBeyond);
   }
@@ -203,12 +210,13 @@ class Pass {
       case Op::kTURN:
         return joint(code.a);
       case Op::kSLIDING:
-        return number(-kFastest, kFastest);
+        return rest_ != nullptr ? number(-kStill, kStill) : number(-kFastest, kFastest);
       case Op::kVEL:
-        return vector(-kFastest, kFastest);
+        return rest_ != nullptr ? vector(-kStill, kStill) : vector(-kFastest, kFastest);
       case Op::kVADD:
         return by_axis(a(), b(), sum);
       case Op::kVSUB:
+        if (rest_ != nullptr && is_same_place(code.a, code.b)) return vector(-kSettled, kSettled);
         return by_axis(a(), b(),
                        [](const Interval& p, const Interval& q) { return sum(p, negative(q)); });
       case Op::kVSCALE: {
@@ -218,8 +226,10 @@ class Pass {
       }
       case Op::kVDOT:
         return of(inner(a().vector, b().vector));
-      case Op::kIMP:
-        return number(0, kInfinity);
+      case Op::kIMP: {
+        const auto touch = rest_ != nullptr ? rest_->touch(code.a, code.b) : std::nullopt;
+        return touch && !*touch ? number(0, 0) : number(touch ? kLeastPress : 0, kInfinity);
+      }
       case Op::kVLEN:
         return of(length(a().vector, 3));
       case Op::kVLENXY:
@@ -270,7 +280,8 @@ class Pass {
       case Op::kALWAYS:
         return truth(a().truth);
       case Op::kHOLD:
-        return truth(a().truth == std::optional(false) ? a().truth : std::nullopt);
+        return truth(rest_ != nullptr || a().truth == std::optional(false) ? a().truth
+                                                                           : std::nullopt);
       // A read-out has one value, that of the last step.
       case Op::kCOUNT:
         if (a().truth) return number(*a().truth ? horizon_ : 0, *a().truth ? horizon_ : 0);
@@ -290,8 +301,13 @@ class Pass {
         return of(a().vector[0]);
       // Contacts and turning have no bound that is worth a message.
       case Op::kPUSH:
+        if (rest_ != nullptr && rest_->touch(code.a, code.b) == std::optional(false))
+          return vector(0, 0);
+        return {};
       case Op::kSPIN:
+        return rest_ != nullptr ? vector(-kStill, kStill) : Known{};
       case Op::kTURNING:
+        return rest_ != nullptr ? number(-kStill, kStill) : Known{};
       case Op::kVCROSS:
       // Without a result.
       case Op::kEND:
@@ -300,6 +316,16 @@ class Pass {
         return {};
     }
     return {};
+  }
+
+  // Where one body is, and where it was when it had settled.
+  bool is_same_place(std::uint16_t a, std::uint16_t b) const {
+    const plan::Instruction& one = program_.code[known_[a].instruction];
+    const plan::Instruction& other = program_.code[known_[b].instruction];
+    const auto is_place = [](const plan::Instruction& code) {
+      return static_cast<Op>(code.op) == Op::kPOS || static_cast<Op>(code.op) == Op::kSTART;
+    };
+    return is_place(one) && is_place(other) && one.a == other.a;
   }
 
   static std::optional<bool> compare(const Known& left, const Known& right, bool or_equal) {
@@ -391,6 +417,7 @@ class Pass {
   double horizon_, control_hz_;
   Room room_;
   std::span<const PlacedBody> placed_;
+  const AtRest* rest_ = nullptr;
   std::vector<Known> known_;
   Findings findings_;
 };
@@ -400,6 +427,13 @@ class Pass {
 Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
                         const Room& room) {
   return Pass(program, horizon, control_hz, room).run();
+}
+
+std::optional<bool> holds_at_rest(const Program& program, std::size_t metric, const AtRest& rest) {
+  for (const ConstantMetric& found : Pass(program, rest).run().constants) {
+    if (found.metric == metric && !found.number) return found.value;
+  }
+  return std::nullopt;
 }
 
 std::optional<bool> holds(const Program& program, std::span<const PlacedBody> placed) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -52,6 +53,18 @@ struct Findings {
 // `horizon` in control steps, `control_hz` of them a second.
 Findings find_constants(const Program& program, std::uint64_t horizon, double control_hz,
                         const Room& room);
+
+// A world in which nothing has moved yet: things lie where they were put down.
+struct AtRest {
+  std::vector<PlacedBody> placed;  // by body; as made where nothing is known
+  std::vector<Interval> joints;    // of fixtures, m or rad
+  // Whether two bodies touch; nothing where that is not known.
+  std::function<std::optional<bool>(std::uint16_t, std::uint16_t)> touch;
+};
+
+// Whether a metric of a program holds there, however long it stays so; nothing when that cannot be
+// told.
+std::optional<bool> holds_at_rest(const Program& program, std::size_t metric, const AtRest& rest);
 
 // Whether the one metric of a program of measurements holds of bodies as they are put down; nothing
 // when that cannot be told.

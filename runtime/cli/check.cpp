@@ -3,11 +3,16 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
+#include <utility>
 
 #include "runtime/base/digit_groups.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/compile.h"
 #include "runtime/cli/watch.h"
+#include "runtime/plan/plan.h"
+#include "runtime/plan/skills.h"
+#include "runtime/vm/source_goal.h"
 
 namespace probe::cli {
 namespace {
@@ -38,12 +43,51 @@ std::string counted(std::size_t count, const char* thing) {
 
 // How much was looked at, what was found, how long it took: a silent success looks like nothing.
 void say_outcome(const CompiledText& text, double milliseconds) {
-  const std::string found = text.errors + text.warnings == 0
-                                ? "no findings"
-                                : counted(text.errors, "error") + ", " +
-                                      counted(text.warnings, "warning");
+  const std::string found =
+      text.errors + text.warnings == 0
+          ? "no findings"
+          : counted(text.errors, "error") + ", " + counted(text.warnings, "warning");
   say("{}, {} in {}: {}, {:.0f} ms\n", counted(text.tasks, "task"), counted(text.starts, "start"),
       counted(text.files.size(), "file"), found, milliseconds);
+}
+
+// Of more than so many starts it is not asked which tasks have skills.
+constexpr std::size_t kMostStartsAsked = 20'000;
+constexpr std::size_t kMostTasksNamed = 6;
+
+// The tasks for whose goal policy `expert` finds no skills, one of those that are judged alike in
+// one scene standing for all. Nothing where that cannot be found out, as without the assets.
+std::vector<std::string> without_skills(const CheckArguments& arguments) {
+  std::vector<std::string> names;
+  CompiledText built = compile_quietly(arguments.files, arguments.assets, "", true, false);
+  if (built.exit != kFine) return names;
+  const auto plan = plan::Plan::from_bytes(std::move(built.plan));
+  if (!plan.ok()) return names;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> known;  // by program and scene
+  for (std::uint32_t task = 0; task < plan->tasks().size(); ++task) {
+    const plan::TaskRecord& record = plan->tasks()[task];
+    if (!plan::skills_of(plan->tables(), task).empty()) continue;
+    const auto [at, is_new] = known.try_emplace({record.program, record.scene}, true);
+    if (is_new) {
+      const auto has = vm::has_skills(*plan, task);
+      at->second = !has.ok() || *has;
+    }
+    if (!at->second) names.emplace_back(plan->text(record.name));
+  }
+  return names;
+}
+
+void say_without_skills(const CheckArguments& arguments, const CompiledText& text) {
+  if (text.exit != kFine || arguments.json || text.starts > kMostStartsAsked) return;
+  const std::vector<std::string> names = without_skills(arguments);
+  if (names.empty()) return;
+  std::string list;
+  for (std::size_t i = 0; i < names.size() && i < kMostTasksNamed; ++i)
+    list += (i == 0 ? "`" : ", `") + names[i] + "`";
+  if (names.size() > kMostTasksNamed)
+    list += fmt::format(" and {} more", names.size() - kMostTasksNamed);
+  say("note: policy `expert` finds no skills for {} of {}: {}; `solution {{ .. }}` says how\n",
+      digit_groups(names.size()), counted(text.tasks, "task"), list);
 }
 
 using Clock = std::chrono::steady_clock;
@@ -93,6 +137,7 @@ int check_verb(const CheckArguments& arguments) {
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json);
   if (!text.files.empty()) say_outcome(text, milliseconds_since(start));
+  say_without_skills(arguments, text);
   return text.exit;
 }
 

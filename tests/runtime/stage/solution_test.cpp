@@ -236,6 +236,20 @@ task put_away like kept {
   CHECK(solves(plan, "put_away", 0));
 }
 
+TEST_CASE("what rides in a drawer that is opened is displaced, and not by itself") {
+  const plan::Plan plan = kitchen_of(R"(
+use "std/carried.probe"
+layout stowed like left { place source in cabinet.inside_top }
+metrics riding { success = at end (opened(cabinet.top_drawer) and displaced(source) and not once displaced_itself(source, cabinet.top_drawer)) }
+task ride like kept {
+  scene drawers; layout stowed; metrics riding; say "open the top drawer with {the source} in it, before {the target}"
+  solution { open cabinet.top_drawer }
+}
+suite all { tasks { ride }; seeds 0 }
+)");
+  CHECK(solves(plan, "ride", 0));
+}
+
 TEST_CASE("the expert turns a knob, opens a door and closes it") {
   const plan::Plan plan = kitchen_of(R"(
 metrics cooking { success = at end turned(stove.left_knob, 80deg) }

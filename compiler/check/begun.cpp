@@ -1,0 +1,150 @@
+// P0607: success that is true before anything has moved, in some of a task's starts. A policy that
+// does nothing has them. What is not known before things settle, as whether one lies on another,
+// says nothing here.
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "compiler/check/check.h"
+#include "compiler/check/starts.h"
+#include "compiler/define/fixture.h"
+#include "compiler/define/in_start.h"
+#include "compiler/define/views.h"
+#include "compiler/geometry/centre.h"
+#include "compiler/geometry/footprint.h"
+#include "compiler/lower/lower.h"
+
+namespace probe::sema {
+namespace {
+
+constexpr double kApart = 0.005;        // m: what is farther from something does not touch it
+constexpr double kJointSettles = 1e-3;  // m, rad
+constexpr std::size_t kMostNamed = 12;  // starts that a message names
+
+class BegunChecker {
+ public:
+  BegunChecker(const Model& model, const std::string& asset_root, Reporter& reporter)
+      : model_(model), centres_(asset_root), reporter_(reporter) {}
+
+  void check(const Task& task) {
+    const auto success = std::find_if(task.judged.begin(), task.judged.end(),
+                                      [](const Metric& one) { return one.name == "success"; });
+    if (success == task.judged.end() || success->type.kind != TypeKind::kBool ||
+        task.starts.size() < 2 || !task.motions.empty() ||
+        model_.layouts[task.layout].begins_placed)
+      return;
+    const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
+    const lower::Program* program = program_of(task, *success, bodies);
+    if (program == nullptr) return;
+    // What is measured of bodies that are not apart is not known.
+    const auto is_put = [](const Start::Placed& placed) { return placed.z.has_value(); };
+    if (std::any_of(task.starts.front().placed.begin(), task.starts.front().placed.end(), is_put))
+      return;
+    std::vector<std::size_t> begun;
+    for (std::size_t i = 0; i < task.starts.size(); ++i) {
+      if (holds(*program, task, bodies, task.starts[i])) begun.push_back(i);
+    }
+    // Of all starts nothing is told apart: that is the metric's own fault, and `audit` finds it.
+    if (begun.empty() || begun.size() == task.starts.size()) return;
+    if (!said_.insert({success->span, task.starts.data()}).second) return;
+    report(task, *success, begun);
+  }
+
+ private:
+  // Success as a program, made once for tasks of one shape; null where it is false wherever things
+  // lie apart, or cannot be lowered, which is said elsewhere.
+  const lower::Program* program_of(const Task& task, const Metric& success,
+                                   const std::vector<lower::Body>& bodies) {
+    const CameraId camera = views_of(model_, task).front().camera;
+    std::vector<std::uint32_t> shape = lower::shape_of(model_, {&success, 1}, bodies);
+    if (model_.exprs.needs_frame)
+      shape.insert(shape.end(),
+                   {static_cast<std::uint32_t>(task.scene), static_cast<std::uint32_t>(camera)});
+    const auto [at, is_new] = programs_.try_emplace(std::move(shape));
+    if (is_new) {
+      Diagnostics unsaid;
+      at->second = lower::lower_metrics(
+          model_, {&success, 1}, bodies,
+          frame_of(model_, model_.scenes[task.scene], model_.cameras[camera]), unsaid);
+      const auto touch = [&](std::uint16_t a, std::uint16_t b) -> std::optional<bool> {
+        return is_robot(bodies[a]) || is_robot(bodies[b]) ||
+                       (is_object(bodies[a]) && is_object(bodies[b]))
+                   ? std::optional(false)
+                   : std::nullopt;
+      };
+      if (at->second && lower::holds_at_rest(*at->second, 0, {{}, {}, touch}) == false)
+        at->second.reset();
+    }
+    return at->second ? &*at->second : nullptr;
+  }
+
+  static bool is_robot(const lower::Body& body) { return body.kind == plan::BodyKind::kLink; }
+  static bool is_object(const lower::Body& body) { return body.kind == plan::BodyKind::kObject; }
+
+  bool holds(const lower::Program& program, const Task& task,
+             const std::vector<lower::Body>& bodies, const Start& start) {
+    const Scene& scene = model_.scenes[task.scene];
+    std::vector<Footprint> prints;
+    for (const Start::Placed& placed : start.placed)
+      prints.push_back(footprint(model_.objects[placed.object], placed));
+    const auto is_apart = [&](std::size_t a, std::size_t b) {
+      return overlap(prints[a], prints[b]) < -kApart;
+    };
+    const auto touch = [&](std::uint16_t a, std::uint16_t b) -> std::optional<bool> {
+      if (is_robot(bodies[a]) || is_robot(bodies[b])) return false;
+      if (is_object(bodies[a]) && is_object(bodies[b]))
+        return is_apart(a, b) ? std::optional(false) : std::nullopt;
+      const std::uint16_t object = is_object(bodies[a]) ? a : b;
+      const std::uint16_t other = object == a ? b : a;
+      // On the bare surface, alone.
+      if (!is_object(bodies[object]) || bodies[other].kind != plan::BodyKind::kSurface ||
+          scene.fixture || !scene.fixtures.empty())
+        return std::nullopt;
+      for (std::size_t k = 0; k < prints.size(); ++k) {
+        if (k != object && !is_apart(k, object)) return std::nullopt;
+      }
+      return true;
+    };
+    lower::AtRest rest{placed_objects(model_, centres_, task, start), {}, touch};
+    for (const double joint : joint_starts_of(model_, task, start))
+      rest.joints.push_back({joint - kJointSettles, joint + kJointSettles});
+    return lower::holds_at_rest(program, 0, rest) == true;
+  }
+
+  void report(const Task& task, const Metric& success, const std::vector<std::size_t>& begun) {
+    std::string which;
+    for (std::size_t i = 0; i < begun.size() && i < kMostNamed; ++i)
+      which += (i == 0 ? "" : ", ") + std::to_string(begun[i]);
+    if (begun.size() > kMostNamed) which += " ..";
+    const About about(reporter_, task.decl_span);
+    report_of(reporter_, Code::P0607, task, task.span,
+              "`success` of `" + task.name + "` is true before anything moves in " +
+                  std::to_string(begun.size()) + " of " + std::to_string(task.starts.size()) +
+                  " starts: " + which)
+        .label(success.span, "judged by this")
+        .help(
+            "place things so that none begins so, or ask for what has to move as well: `.. and "
+            "displaced(source)`");
+  }
+
+  const Model& model_;
+  Centres centres_;
+  Reporter& reporter_;
+  std::map<std::vector<std::uint32_t>, std::optional<lower::Program>> programs_;
+  std::set<std::pair<Span, const Start*>> said_;
+};
+
+}  // namespace
+
+void check_begun(const Model& model, const std::string& asset_root, Reporter& reporter) {
+  if (reporter.has_errors()) return;  // what is lowered is whole
+  BegunChecker checker(model, asset_root, reporter);
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    if (!model.robots[model.scenes[task.scene].robot].model) continue;
+    checker.check(task);
+  }
+}
+
+}  // namespace probe::sema

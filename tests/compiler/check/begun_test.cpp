@@ -1,0 +1,56 @@
+// Success that is true before anything has moved.
+#include <doctest/doctest.h>
+
+#include "tests/compiler/small_suite.h"
+
+using namespace probe;
+
+namespace {
+
+std::string begun_of(const std::string& success, const std::string& more = "") {
+  const std::string said =
+      test::analyze_with_suite(std::string(test::kChest) +
+                               "predicate on_ground(o: object) = any x in bodies - objects - "
+                               "links: impulse(o, x) > 1e-6Ns\n"
+                               "metrics m { success = at end " +
+                               success + " }\n" +
+                               "task t like red_on_tray { metrics m; say \"use {the source} and "
+                               "{the target}\" " +
+                               more + " }\n")
+          ->said();
+  return said.substr(0, said.find('\n'));
+}
+
+const char* const kSome = "warning[P0607]: `success` of `t` is true before anything moves in ";
+
+}  // namespace
+
+TEST_CASE("success that holds in some starts before anything moves is told, with the starts") {
+  // 2 x 2 cells, source before target: 12 placements at 2 turns, 8 of them one before the other
+  // along x.
+  CHECK(begun_of("x(source) < x(target) - 1cm") ==
+        std::string(kSome) + "8 of 24 starts: 2, 3, 4, 5, 8, 9, 10, 11");
+  CHECK(begun_of("(x(source) < x(target) - 1cm and on_ground(source) and moved_xy(target) < "
+                 "1cm)")
+            .find(kSome) == 0);
+  CHECK(begun_of("x(source) < x(target) - 1cm for 5 steps").find(kSome) == 0);
+  CHECK(begun_of("(x(source) < x(target) - 1cm and moved_xy(source) > 3cm)") == "");
+  CHECK(begun_of("(x(source) < x(target) - 1cm and impulse(source, target) > 1e-6Ns)") == "");
+  CHECK(begun_of("(x(source) < x(target) - 1cm and any f in fingers: impulse(f, source) > "
+                 "1e-6Ns)") == "");
+}
+
+TEST_CASE("what cannot be told before things settle says nothing, nor does what holds always") {
+  CHECK(begun_of("height(source) > height(target)") == "");
+  CHECK(begun_of("x(tcp) > x(target)") == "");
+  CHECK(begun_of("x(source) < x(target) - 9.9cm") != "");
+  CHECK(begun_of("x(source) < x(target) - 20cm") == "");
+  // Exactly as far apart as the cells: what settles may be on either side.
+  CHECK(begun_of("x(source) < x(target) - 20.05cm") == "");
+}
+
+TEST_CASE("a joint that begins where it shall be counts as well") {
+  CHECK(begun_of("(travel(chest.slide) > 10cm and x(source) < x(target))", "; scene room") == "");
+  CHECK(begun_of("(travel(chest.slide) > 3cm and x(source) < x(target))", "; scene room")
+            .find(kSome) == 0);
+}
