@@ -239,7 +239,7 @@ task put_away like kept {
 TEST_CASE("what rides in a drawer that is opened is displaced, and not by itself") {
   const plan::Plan plan = kitchen_of(R"(
 use "std/carried.probe"
-layout stowed like left { place source in cabinet.inside_top }
+layout stowed like left { place target at (-20cm, 5cm); place source in cabinet.inside_top; expect 2 episodes }
 metrics riding { success = at end (opened(cabinet.top_drawer) and displaced(source) and not once displaced_itself(source, cabinet.top_drawer)) }
 task ride like kept {
   scene drawers; layout stowed; metrics riding; say "open the top drawer with {the source} in it, before {the target}"
