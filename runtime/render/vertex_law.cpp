@@ -6,6 +6,17 @@
 #include "runtime/render/clones.h"
 
 namespace probe::render {
+
+PROBE_CLONES void PowerTable::read_all(const float* __restrict values, const float* __restrict x,
+                                       std::size_t count, float* __restrict powers) {
+  for (std::size_t i = 0; i < count; ++i) {
+    float inside = x[i];
+    inside = inside < 0.0f ? 0.0f : inside;
+    powers[i] = 1.0f < inside ? 1.0f : inside;
+  }
+  for (std::size_t i = 0; i < count; ++i) powers[i] = read(values, powers[i]);
+}
+
 namespace {
 
 // Natural logarithm of x in (0, 1] and e^x of x <= 0, by series of + - * / alone: the same bits
@@ -189,16 +200,6 @@ PROBE_CLONES void end_light(const LightBlock& block, std::size_t k, float share,
 bool is_strength(double value) { return std::isfinite(value) && value >= 0; }
 
 }  // namespace
-
-PROBE_CLONES void PowerTable::read_all(const float* __restrict values, const float* __restrict x,
-                                       std::size_t count, float* __restrict powers) {
-  for (std::size_t i = 0; i < count; ++i) {
-    float inside = x[i];
-    inside = inside < 0.0f ? 0.0f : inside;
-    powers[i] = 1.0f < inside ? 1.0f : inside;
-  }
-  for (std::size_t i = 0; i < count; ++i) powers[i] = read(values, powers[i]);
-}
 
 PowerTable::PowerTable(double exponent) {
   constexpr double kNothing = -700;  // e^-700 is no float any more
