@@ -532,10 +532,12 @@ class FolderStore final : public Store {
   // Traces and videos that a killed process did not finish: of our names, and only where no link
   // leads out of this folder, because what lies behind one is not ours to clean.
   void remove_leftovers() const {
-    // "suite.plan.1234-0.tmp": killed before the folder had its plan.
+    // "suite.plan.1234-0.tmp", "chosen.1234-1.tmp": killed before the folder had its plan, or knew
+    // what was chosen.
     const auto own = list_folder(dir_);
     for (const std::string& name : own ? *own : std::vector<std::string>{}) {
-      if (name.starts_with("suite.plan.") && name.ends_with(".tmp"))
+      const bool is_ours = name.starts_with("suite.plan.") || name.starts_with("chosen.");
+      if (is_ours && name.ends_with(".tmp"))
         std::remove((fs::path(dir_) / name).c_str());
     }
     for (const char* kind : {"traces", "videos"}) {

@@ -364,8 +364,10 @@ TEST_CASE("what a kill left of a plan goes with the next opening") {
   const std::string dir = folder / "run";
   fs::create_directories(dir);
   std::ofstream(dir + "/suite.plan.4711-0.tmp") << "half";
+  std::ofstream(dir + "/chosen.4711-1.tmp") << "ha";
   REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
   CHECK_FALSE(fs::exists(dir + "/suite.plan.4711-0.tmp"));
+  CHECK_FALSE(fs::exists(dir + "/chosen.4711-1.tmp"));
   CHECK(fs::exists(dir + "/suite.plan"));
 }
 
