@@ -172,9 +172,10 @@ const statements = {
     light: ($) => $.identifier,
     camera: ($) => seq($.identifier, optional(seq('as', field('as', $.identifier)))),
     distractors: ($) => choice(
-        'none', names($), seq(alias('none', $.identifier), on($, ','), names($)),
+        'none', list($, $.thing), seq(alias($._none_thing, $.thing), on($, ','), list($, $.thing)),
         seq(count($), 'of', parens(names($)), 'seed', count($))),
     say: ($) => choice($.identifier, $.template),
+    then: ($) => choice('none', seq('say', choice($.identifier, $.template), 'when', field('when', $._expression))),
     refer: ($) => seq(field('role', $.identifier), 'as', field('phrase', $.identifier)),
     pose: ($) => seq($.identifier, poses($)),
     start: ($) => jointStart($, $.quantity, $.identifier),
@@ -313,6 +314,7 @@ module.exports = grammar({
     name_set: ($) => seq(alias($._set_begin, '{'), optional($._ends), names($), optional($._ends), '}'),
     path: ($) => seq($.identifier, repeat(seq(on($, '.'), $.identifier))),
     thing: ($) => seq($.identifier, optional(seq(on($, '.'), field('part', $.identifier)))),
+    _none_thing: ($) => alias('none', $.identifier),  // an object that is called so, where others follow
     // Behind `in`, where `distinct` and `remaining` have a meaning.
     _thing_in: ($) => seq(nameOr($, 'distinct', 'remaining'), optional(seq(on($, '.'), field('part', $.identifier)))),
     point: ($) => parens(quantities($)),
@@ -377,7 +379,7 @@ module.exports = grammar({
 
     // ---- tasks ----
     task_block: ($) => block($, $._task_statement),
-    member: ($) => seq(named($), $.task_block),
+    member: ($) => seq(repeat($.allow), named($), $.task_block),
     clear_phrase: ($) => seq(field('phrase', $.identifier), 'of', field('role', $.identifier)),
 
     binder: ($) => seq(named($), 'in', choice(

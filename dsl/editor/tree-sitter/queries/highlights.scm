@@ -21,7 +21,7 @@
   "relations" "remaining" "rest" "robot" "role" "roll" "sample" "samples" "say" "scale" "scene" "scenes" "seed"
   "seeds" "seen" "sensor" "set" "settle" "shading" "shadow" "solution" "source" "specular" "spot" "spread" "stands"
   "start" "starts" "stay" "step" "steps" "stiffness" "suite" "sun" "surface" "target" "task" "tasks" "tcp"
-  "template" "templates" "texture" "the" "time" "times" "to" "trained" "turn" "uncouple" "unseen" "urdf" "use"
+  "template" "templates" "texture" "the" "then" "time" "times" "to" "trained" "turn" "uncouple" "unseen" "urdf" "use"
   "uses" "variant" "variants" "vertex" "viscosity" "when" "where" "whole" "window" "with" "x" "yaw" "yesno"
 ] @keyword
 ["and" "or" "not"] @keyword.operator
