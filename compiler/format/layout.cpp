@@ -437,7 +437,11 @@ class Layouter {
                      : !opens_block                     ? Bracket::kSet
                      : flat                             ? Bracket::kFlatBlock
                                                         : Bracket::kBlock;
-      bracket.is_allow = item.role == TokenRole::kTightParen && state_.brackets.empty() &&
+      // Above a declaration, or above a member of `variants of`.
+      const bool is_above = state_.brackets.empty() ||
+                            state_.brackets.back().kind == Bracket::kBlock ||
+                            state_.brackets.back().kind == Bracket::kFlatBlock;
+      bracket.is_allow = item.role == TokenRole::kTightParen && is_above &&
                          line_.pieces.size() >= 3 &&
                          line_.pieces[line_.pieces.size() - 3].kind == TokenKind::kAt;
       state_.brackets.push_back(bracket);

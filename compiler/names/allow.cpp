@@ -25,7 +25,7 @@ std::vector<Allowed> collect_allows(const Context& context) {
     for (const syntax::Decl& decl : file->decls) {
       for (const syntax::Allow& allow : decl.allows) {
         if (const auto code = code_from_slug(allow.what.text))
-          allows.push_back({&allow, *code, decl.span});
+          allows.push_back({&allow, *code, allow.member.is_none() ? decl.span : allow.member});
       }
     }
   }

@@ -1080,6 +1080,7 @@ struct Allow {  // @allow(confounded, "why")
   Span span;
   Name what;
   Text reason;
+  Span member;  // of `variants of`, above which it stands; none: above the declaration
 };
 
 using DeclNode =

@@ -35,10 +35,17 @@ DeclNode Parser::variants_decl() {
   out.of = name();
   block(any_name, [&] {
     VariantsMember member;
+    const std::size_t first = member_allows_.size();
+    while (!failed_ && raw_kind() == TokenKind::kAt) {
+      member_allows_.push_back(allow());
+      skip_newlines();
+    }
     const std::uint32_t begin = mark();
     member.name = name();
     member.body = task_body();
     member.span = since(begin);
+    for (std::size_t i = first; i < member_allows_.size(); ++i)
+      member_allows_[i].member = member.span;
     if (!member.name.text.empty()) out.members.push_back(std::move(member));
   });
   return out;

@@ -69,6 +69,8 @@ void Parser::declaration() {
     decl.node = declaration_node();
   }
   decl.span = since(begin);
+  std::ranges::move(member_allows_, std::back_inserter(decl.allows));
+  member_allows_.clear();
   const bool at_end = raw_kind() == TokenKind::kEnd;
   if (!failed_ && !at_end && !at(TokenKind::kSemicolon)) {
     fail_expected();

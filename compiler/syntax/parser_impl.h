@@ -354,6 +354,7 @@ class Parser {
   DeclNode declaration_node();
   std::vector<std::string_view> docs_before() const;
   Allow allow();
+  std::vector<Allow> member_allows_;  // of the declaration that is being read
 
   template <typename Node, typename Id>
   Id add_node(std::vector<Node>& nodes, std::vector<std::uint16_t>& heights, Node node,

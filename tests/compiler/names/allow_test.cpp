@@ -14,6 +14,18 @@ TEST_CASE("an @allow silences warnings about its declaration, and a word when th
             ->codes() == "P0209");
 }
 
+TEST_CASE("above a member of variants an @allow is about that member alone") {
+  const std::string two = "a { light night; distractors blue }\n";
+  const auto said = [&](const std::string& lines) {
+    return analyze_with_suite("variants of red_on_tray {\n" + lines + "}")->codes();
+  };
+  CHECK(said(two) == "P0701");
+  CHECK(said("@allow(confounded, \"why\")\n" + two) == "");
+  CHECK(said("@allow(confounded, \"why\")\n" + two +
+             "b { light night; distractors pale }\n") == "P0701");
+  CHECK(said("@allow(confounded, \"why\")\nc { light night }\n") == "P0209");
+}
+
 TEST_CASE(
     "a word that nothing can be allowed by is reported on every declaration, with the nearest") {
   for (const std::string decl : {"object o like red { unseen }", "light l { ambient 0.1 }",
