@@ -8,6 +8,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/define/axes.h"
+#include "compiler/define/telling.h"
 
 namespace probe::sema {
 namespace {
@@ -61,11 +62,14 @@ const Span* statement_of(const Task& task, plan::Axis axis) {
 void label_axes(const Model& model, const Task& task, const Task& baseline,
                 Diagnostic& diagnostic) {
   std::string others;
-  for (const ObjectId id : task.distractors) {
-    const auto& known = baseline.distractors;
-    if (std::find(known.begin(), known.end(), id) == known.end())
-      others += (others.empty() ? "distractors: + " : ", ") + model.objects[id].name;
-  }
+  const auto add = [&](const std::vector<ObjectId>& now, const std::vector<ObjectId>& known) {
+    for (const ObjectId id : now) {
+      if (std::find(known.begin(), known.end(), id) == known.end())
+        others += (others.empty() ? "distractors: + " : ", ") + model.objects[id].name;
+    }
+  };
+  add(task.distractors, baseline.distractors);
+  add(task.part_distractors, baseline.part_distractors);
   if (others.empty()) others = plan::axis_name(plan::Axis::kDistractors);
   for (const plan::Axis axis : plan::axes_in(task.axes)) {
     const Span* span = statement_of(task, axis);
@@ -144,7 +148,7 @@ void check_twins(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
     if (!task.derived || !task.complete || task.axes == 0 || task.baseline == TaskId::kNone)
       continue;
-    auto& alike = sweeps[{task.decl_span, task.baseline, task.prompt, task.starts.data(),
+    auto& alike = sweeps[{task.decl_span, task.baseline, whole_prompt(task), task.starts.data(),
                           task.horizon, task.idle, task.delay}];
     const auto twin = std::find_if(alike.begin(), alike.end(), [&](const Task* other) {
       return axes_between(model, task, *other) == 0;

@@ -14,6 +14,7 @@
 #include "compiler/check/noun_words.h"
 #include "compiler/check/relation_words.h"
 #include "compiler/check/said.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
@@ -783,18 +784,27 @@ bool says_other_part(const Model& model, const Task& task, Shared& shared, Repor
 void check_goal_words(const Model& model, Reporter& reporter) {
   AskedTwice asks_twice(model);
   Shared shared(model);
-  for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete || is_control(model.templates[task.say])) continue;
+  const auto check = [&](const Task& task, bool is_last, bool is_whole) {
+    if (is_control(model.templates[task.say])) return;
     const About about(reporter, task.decl_span);
     Told told(model, task, shared);
     // One thing is said of a task: the others may follow from it.
-    if (says_other_relation(model, task, told, shared, reporter)) continue;
-    if (says_other_goal(model, task, told, reporter)) continue;
-    if (says_other_part(model, task, shared, reporter)) continue;
+    if (says_other_relation(model, task, told, shared, reporter)) return;
+    if (says_other_goal(model, task, told, reporter)) return;
+    if (says_other_part(model, task, shared, reporter)) return;
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
-      continue;
-    if (says_other_clause(model, task, told, shared, reporter)) continue;
-    if (asks_twice(task)) leaves_one_out(model, task, told, reporter);
+      return;
+    // What is done before another sentence comes need not be so at the end.
+    if (is_last && says_other_clause(model, task, told, shared, reporter)) return;
+    // What one of several sentences leaves out another may say.
+    if (is_whole && asks_twice(task)) leaves_one_out(model, task, told, reporter);
+  };
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete) continue;
+    std::size_t sentence = 0;
+    for_each_telling(task, [&](const Task& told) {
+      check(told, ++sentence == sentence_count(task), task.later.empty());
+    });
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/said.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
@@ -132,9 +133,8 @@ bool Mentions::is_absent(const Task& task, ObjectId named) const {
 
 void check_mentions(const Model& model, Reporter& reporter) {
   Mentions mentions(model);
-  for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete || (task.keeps_absent && !task.allow_absent)) continue;
-    if (is_control(model.templates[task.say])) continue;
+  const auto check = [&](const Task& task) {
+    if (is_control(model.templates[task.say])) return;
     const About about(reporter, task.decl_span);
     for (const ObjectId named : mentions.in(task.say)) {
       if (!mentions.is_absent(task, named)) continue;
@@ -149,6 +149,10 @@ void check_mentions(const Model& model, Reporter& reporter) {
       // Only a warning can be silenced: a suite that was published like this says so.
       if (task.allow_absent) absent.severity = Severity::kWarning;
     }
+  };
+  for (const Task& task : model.tasks) {
+    if (task.abstract || !task.complete || (task.keeps_absent && !task.allow_absent)) continue;
+    for_each_telling(task, check);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/check/check.h"
+#include "compiler/define/telling.h"
 #include "runtime/plan/limits.h"
 #include "runtime/plan/readouts.h"
 
@@ -65,7 +66,7 @@ void check_fingers(const Model& model, Reporter& reporter, const Task& task,
   if (scene.robot == RobotId::kNone) return;
   const Robot& robot = model.robots[scene.robot];
   if (robot.broken || !robot.fingers.empty()) return;
-  for (const Metric& metric : task.judged) {
+  for (const Metric& metric : measured_in(task)) {
     FingerFinder finder{model};
     finder.visit(metric.expr);
     if (finder.found == nullptr) continue;
@@ -213,7 +214,7 @@ void check_metrics(const Model& model, Reporter& reporter) {
     check_success(model, reporter, task, without_success);
     check_count(model, reporter, task, without_success);
     check_fingers(model, reporter, task, without_fingers);
-    for (const Metric& metric : task.judged) {
+    for (const Metric& metric : measured_in(task)) {
       if (!searched.insert({metric.expr, task.horizon}).second) continue;
       HoldFinder finder{model, task.horizon, {}};
       finder.visit(metric.expr);

@@ -11,6 +11,7 @@
 #include "compiler/define/in_start.h"
 #include "compiler/define/likeness.h"
 #include "compiler/define/task.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/wording.h"
@@ -410,6 +411,18 @@ struct TaskLanguage {
   }
 };
 
+// Whoever hears one sentence twice in turn cannot know that it came again.
+void check_turns(const Task& task, Reporter& reporter) {
+  for (std::size_t i = 0; i < task.later.size(); ++i) {
+    const std::string& before = i == 0 ? task.prompt : task.later[i - 1].text;
+    if (task.later[i].text != before) continue;
+    reporter
+        .report(Situation::kSaidAgain, task.place(task.later[i].say_span),
+                "`" + task.name + "` says \"" + before + "\" twice in turn")
+        .help("a sentence that is repeated changes nothing: leave one out");
+  }
+}
+
 }  // namespace
 
 void check_phrases(const Model& model, const std::string& asset_root, Reporter& reporter) {
@@ -419,15 +432,18 @@ void check_phrases(const Model& model, const std::string& asset_root, Reporter& 
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
-    const TaskLanguage check{model, reporter, task, unfit, relations, unclear};
-    // A second slot of one name says nothing new, unless it counts.
+    // A second slot of one name says nothing new, unless it counts; in a later sentence, either.
     std::set<std::tuple<std::string, bool, syntax::SlotCount>> checked;
-    for (const Template::Part& part : model.templates[task.say].parts) {
-      if (part.slot &&
-          checked.insert({part.slot->name.text, part.slot->avoid, part.slot->count}).second)
-        check.check_slot(*part.slot);
-    }
-    check.check_sentence();
+    for_each_telling(task, [&](const Task& told) {
+      const TaskLanguage check{model, reporter, told, unfit, relations, unclear};
+      for (const Template::Part& part : model.templates[told.say].parts) {
+        if (part.slot &&
+            checked.insert({part.slot->name.text, part.slot->avoid, part.slot->count}).second)
+          check.check_slot(*part.slot);
+      }
+      check.check_sentence();
+    });
+    check_turns(task, reporter);
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/said.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
@@ -167,15 +168,14 @@ std::string advice(const Model& model, const Task& task, const Found& found) {
 
 void check_place_words(const Model& model, Reporter& reporter) {
   std::map<TemplateId, bool> known;  // whether its own words have one at all
-  for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+  const auto check = [&](const Task& task) {
     const Template& say = model.templates[task.say];
-    if (is_control(say)) continue;
+    if (is_control(say)) return;
     const auto [may, is_new] = known.try_emplace(task.say, false);
     if (is_new) may->second = has_place_word(say);
-    if (!may->second) continue;
+    if (!may->second) return;
     const std::optional<Found> found = find_in(model, task, said_by(model, task));
-    if (!found) continue;
+    if (!found) return;
     const About about(reporter, task.decl_span);
     reporter
         .report(Code::P1203, task.place(task.say_span),
@@ -183,6 +183,9 @@ void check_place_words(const Model& model, Reporter& reporter) {
                     "` which thing is meant by where it is, and nothing proves it")
         .label(say.span, "said here")
         .help(advice(model, task, *found));
+  };
+  for (const Task& task : model.tasks) {
+    if (!task.abstract && task.complete) for_each_telling(task, check);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "compiler/check/unclear_starts.h"
 
 #include "compiler/define/fixture.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 
 namespace probe::sema {
@@ -8,7 +9,7 @@ namespace probe::sema {
 const Unclear& UnclearStarts::find(const Task& task, const Phrase& phrase, ObjectId wanted) {
   std::vector<std::pair<RoleId, ObjectId>> filled;
   for (const ObjectId id : task.objects()) filled.emplace_back(task.role_of(id), id);
-  for (const auto& [role, id] : task.things()) filled.emplace_back(role, id);
+  for (const auto& [role, id] : things_of(task)) filled.emplace_back(role, id);
   std::vector<double> joints;
   if (!model_.scenes[task.scene].fixtures.empty()) joints = joint_starts_in_all(model_, task);
   Key key(task.starts.data(), task.starts.size(), task.scene, views_of(model_, task).front().camera,

@@ -8,6 +8,7 @@
 #include "compiler/define/role.h"
 #include "compiler/define/starts.h"
 #include "compiler/define/task.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/define/views.h"
 #include "compiler/define/wording.h"
@@ -240,7 +241,8 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !same_cameras(model, a, b) ||
       joint_starts_in_all(model, a) != joint_starts_in_all(model, b) ||
       a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
-      !same_shape(a, b) || a.things() != b.things())
+      !same_shape(a, b) || a.things() != b.things() ||
+      !std::ranges::is_permutation(a.part_distractors, b.part_distractors))
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
@@ -266,7 +268,11 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
                                 !is_same_body(model.objects[here[i]], model.objects[there[i]])))
       return false;
   }
-  return render_prompt(model, a) == render_prompt(model, b);
+  if (a.later.size() != b.later.size() || !same_turns(model, a, b)) return false;
+  for (std::size_t i = 0; i < sentence_count(a); ++i) {
+    if (render_prompt(model, telling(a, i)) != render_prompt(model, telling(b, i))) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -284,8 +290,6 @@ class Comparison {
                      !same_scene(model, model.scenes[task.scene], model.scenes[baseline.scene])) {}
 
   bool moves(plan::Axis axis) const {
-    const Template& say = model_.templates[task_.say];
-    const Template& said = model_.templates[baseline_.say];
     switch (axis) {
       case plan::Axis::kObjectSource:
         return task_.source != baseline_.source;
@@ -298,11 +302,12 @@ class Comparison {
         return false;
       }
       case plan::Axis::kDistractors:
-        return sorted(task_.distractors) != sorted(baseline_.distractors);
+        return sorted(task_.distractors) != sorted(baseline_.distractors) ||
+               sorted(task_.part_distractors) != sorted(baseline_.part_distractors);
       case plan::Axis::kLanguageAction:
         return asks_otherwise(model_, task_, baseline_);
       case plan::Axis::kLanguageNegation:
-        return has_negation(say) != has_negation(said);
+        return has_negation(model_, task_) != has_negation(model_, baseline_);
       case plan::Axis::kLanguageAppearance:
       case plan::Axis::kLanguageCommonsense:
       case plan::Axis::kLanguageSpatial:
@@ -448,7 +453,7 @@ bool uses(const Model& model, const Task& task, plan::Axis axis) {
     case plan::Axis::kLanguageAction:
       return root.complete && asks_otherwise(model, task, root);
     case plan::Axis::kLanguageNegation:
-      return has_negation(model.templates[task.say]);
+      return has_negation(model, task);
     case plan::Axis::kLanguageAppearance:
     case plan::Axis::kLanguageCommonsense:
     case plan::Axis::kLanguageSpatial:

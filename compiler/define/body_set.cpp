@@ -38,6 +38,24 @@ bool ExprReader::only_objects(SetRef ref) {
   }
 }
 
+bool ExprReader::may_have_parts(SetRef ref) {
+  const SetNode& set = arena().sets[ref];
+  switch (set.op) {
+    case SetOp::kDistractors:
+      return context_.model.has_part_distractors;
+    case SetOp::kRole:
+      return context_.model.roles[set.role].takes_things;
+    case SetOp::kUnion:
+      return may_have_parts(set.left) || may_have_parts(set.right);
+    case SetOp::kIntersection:
+      return may_have_parts(set.left) && may_have_parts(set.right);
+    case SetOp::kDifference:
+      return may_have_parts(set.left);
+    default:
+      return false;
+  }
+}
+
 bool ExprReader::only_parts(SetRef ref) {
   const SetNode& set = arena().sets[ref];
   switch (set.op) {

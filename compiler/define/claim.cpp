@@ -7,6 +7,7 @@
 
 #include "compiler/define/in_start.h"
 #include "compiler/define/query.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 
 namespace probe::sema {
@@ -53,16 +54,18 @@ Claim claim_of(const Model& model, const Task& task, const Phrase& phrase, Objec
 std::vector<Claim> claims_of(const Model& model, const Task& task) {
   std::vector<Claim> claims;
   std::set<ObjectId> known;
-  const Template& say = model.templates[task.say];
-  for (const Template::Part& part : say.parts) {
-    if (!part.slot || part.slot->role == RoleId::kNone) continue;
-    for (const ObjectId object : meant_by(model, task, say, *part.slot)) {
-      const Referring words = referring(model, task, object);
-      if (words.phrase == nullptr || !words.phrase->is_spatial()) continue;
-      if (known.insert(object).second)
-        claims.push_back(claim_of(model, task, *words.phrase, object));
+  for_each_telling(task, [&](const Task& told) {
+    const Template& say = model.templates[told.say];
+    for (const Template::Part& part : say.parts) {
+      if (!part.slot || part.slot->role == RoleId::kNone) continue;
+      for (const ObjectId object : meant_by(model, told, say, *part.slot)) {
+        const Referring words = referring(model, told, object);
+        if (words.phrase == nullptr || !words.phrase->is_spatial()) continue;
+        if (known.insert(object).second)
+          claims.push_back(claim_of(model, told, *words.phrase, object));
+      }
     }
-  }
+  });
   return claims;
 }
 

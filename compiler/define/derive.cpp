@@ -366,6 +366,7 @@ class Derive {
     const Model& model = context_.model;
     std::vector<ObjectId> present = base.objects();
     for (const auto& [role, id] : base.things()) present.push_back(id);
+    present.insert(present.end(), base.part_distractors.begin(), base.part_distractors.end());
     std::vector<std::string_view> values;
     if (const auto* phrases = std::get_if<syntax::BinderPhrases>(&binder.over)) {
       const std::vector<ObjectId> filled =
@@ -408,6 +409,9 @@ class Derive {
       const auto role = find_role(context_, others->role.text);
       for (const ObjectId id : role ? base.objects_in(*role) : base.distractors)
         values.push_back(model.objects[id].name);
+      if (!role) {
+        for (const ObjectId id : base.part_distractors) values.push_back(model.objects[id].name);
+      }
     } else {
       values.push_back(name);
     }

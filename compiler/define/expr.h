@@ -102,6 +102,8 @@ class ExprReader {
 
   bool only_objects(SetRef ref);
   bool only_parts(SetRef ref);
+  // Whether some task has parts in it.
+  bool may_have_parts(SetRef ref);
 
   std::optional<SetRef> read_set(syntax::SetExprId id);
 

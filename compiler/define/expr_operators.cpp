@@ -153,6 +153,7 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprQuantified& qu
   const std::uint32_t index = variables_;
   Type member{TypeKind::kBody, dim::kNumber, only_objects(*set)};
   member.is_part = only_parts(*set);
+  member.is_open = !member.is_part && may_have_parts(*set);
   add_variable(quantified.variable.text, member);
   const ExprRef body = condition(quantified.body);
   scope_.pop_back();

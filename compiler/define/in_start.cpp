@@ -81,7 +81,7 @@ const lower::Program* Relations::program(const Task& task, std::uint32_t relatio
     key.second.push_back(static_cast<std::uint32_t>(task.role_of(id)));
     if (model_.exprs.names_objects) key.second.push_back(static_cast<std::uint32_t>(id));
   }
-  for (const auto& [role, id] : task.things()) {
+  for (const auto& [role, id] : things_of(task)) {
     key.second.push_back(static_cast<std::uint32_t>(role));
     key.second.push_back(static_cast<std::uint32_t>(id));
   }

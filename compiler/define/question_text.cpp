@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compiler/define/question_pool.h"
+#include "compiler/define/telling.h"
 #include "runtime/base/nouns.h"
 #include "runtime/plan/limits.h"
 
@@ -22,7 +23,9 @@ std::string with_article(Placeholder::Article article, bool bare, std::string_vi
 
 MayOmit QuestionText::say(const Placeholder& placeholder, std::string& out) {
   if (placeholder.kind == Placeholder::kInstruction) {
-    out = asked_.task().prompt;
+    // At the end a policy was told all of it, where all came.
+    const Task& task = asked_.task();
+    out = asked_.family().moment == plan::QuestionMoment::kEnd ? whole_prompt(task) : task.prompt;
     return {};
   }
   // What a judge answers may be asked of a part of a fixture.

@@ -34,6 +34,8 @@ std::set<std::string_view> roles_of_things(const Context& context) {
           roles.insert("target");
       } else if (const auto* role = std::get_if<syntax::RoleStmt>(&stmt)) {
         if (std::ranges::any_of(role->objects, is_thing)) roles.insert(role->role.text);
+      } else if (const auto* others = std::get_if<syntax::DistractorsStmt>(&stmt)) {
+        if (std::ranges::any_of(others->objects, is_thing)) roles.insert("distractors");
       }
     }
   };
@@ -103,6 +105,7 @@ std::string list_of(const std::vector<std::string>& words) {
 
 void define_roles(Context& context) {
   const std::set<std::string_view> things = roles_of_things(context);
+  context.model.has_part_distractors = things.contains("distractors");
   context.model.roles.add({"source", {}, false, things.contains("source")});
   context.model.roles.add({"target", {}, false, things.contains("target")});
   for (const auto& declared : context.symbols.role_decls) {

@@ -4,6 +4,7 @@
 
 #include "compiler/define/likeness.h"
 #include "compiler/define/query.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
@@ -28,12 +29,14 @@ SceneObjects::SceneObjects(const Model& model, const ObjectNames& names, TaskId 
       task_id_(task),
       task_(model.tasks[task]),
       objects_(task_.objects()),
-      prompt_(fold_case(task_.prompt)) {
-  for (const Template::Part& part : model_.templates[task_.say].parts) {
-    if (!part.slot || !part.slot->avoid) continue;
-    const std::optional<ObjectId> id = object_of(*part.slot);
-    if (id && !is_avoided(*id)) avoided_.push_back(*id);
-  }
+      prompt_(fold_case(whole_prompt(task_))) {
+  for_each_telling(task_, [&](const Task& told) {
+    for (const Template::Part& part : model_.templates[told.say].parts) {
+      if (!part.slot || !part.slot->avoid) continue;
+      const std::optional<ObjectId> id = object_of(*part.slot);
+      if (id && !is_avoided(*id)) avoided_.push_back(*id);
+    }
+  });
   // A folder of assets is all the name that a fixture has.
   const auto& fixture = model_.scenes[task_.scene].fixture;
   std::string folder = fixture ? fold_case(fixture->text) : "";
@@ -64,12 +67,17 @@ bool SceneObjects::is_avoided(ObjectId id) const {
 }
 
 bool SceneObjects::is_slot(ObjectId id) const {
-  const auto& parts = model_.templates[task_.say].parts;
-  return std::any_of(parts.begin(), parts.end(), [&](const Template::Part& part) {
-    if (!part.slot || part.slot->avoid) return false;
-    const auto meant = meant_by(model_, task_, model_.templates[task_.say], *part.slot);
-    return std::find(meant.begin(), meant.end(), id) != meant.end();
+  bool is_meant = false;
+  for_each_telling(task_, [&](const Task& told) {
+    const Template& say = model_.templates[told.say];
+    is_meant = is_meant || std::any_of(say.parts.begin(), say.parts.end(),
+                                       [&](const Template::Part& part) {
+                                         if (!part.slot || part.slot->avoid) return false;
+                                         const auto meant = meant_by(model_, told, say, *part.slot);
+                                         return std::ranges::find(meant, id) != meant.end();
+                                       });
   });
+  return is_meant;
 }
 
 bool SceneObjects::is_told(ObjectId id) const {

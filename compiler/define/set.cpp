@@ -304,7 +304,7 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
     case syntax::CondKind::kOod:
       return (task.ood & (word == "source" ? 1u : word == "target" ? 2u : 4u)) != 0;
     case syntax::CondKind::kHas:
-      return word == "distractors" ? !task.distractors.empty() : task.baseline != TaskId::kNone;
+      return word == "distractors" ? !task.distractors.empty() || !task.part_distractors.empty() : task.baseline != TaskId::kNone;
     case syntax::CondKind::kScene:
       return model.scenes[task.scene].name == word;
     case syntax::CondKind::kMetrics:

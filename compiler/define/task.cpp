@@ -14,6 +14,7 @@
 #include "compiler/define/solution.h"
 #include "compiler/define/task_fit.h"
 #include "compiler/define/task_statements.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/views.h"
@@ -198,6 +199,8 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   defined_[index] = true;
   if (task.complete) {
     task.prompt = render_prompt(model, task);
+    for (std::size_t i = 0; i < task.later.size(); ++i)
+      task.later[i].text = render_prompt(model, telling(task, i + 1));
     task.ood = out_of_distribution(model, task);
   }
   model.tasks[static_cast<TaskId>(index)] = std::move(task);
@@ -209,11 +212,15 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
   bool is_complete = true;
   std::string missing;                                    // of source and target
   std::map<RoleId, std::pair<Span, const char*>> spoken;  // with how the task comes to it
-  for (const Template::Part& part : model.templates[task.say].parts) {
-    if (part.slot && part.slot->role != RoleId::kNone)
-      spoken.try_emplace(part.slot->role, part.slot->span, "its words speak of it");
-  }
-  for (const auto& [role, span] : mentioned_.metrics(task.judged).roles)
+  const auto say = [&](TemplateId words) {
+    for (const Template::Part& part : model.templates[words].parts) {
+      if (part.slot && part.slot->role != RoleId::kNone)
+        spoken.try_emplace(part.slot->role, part.slot->span, "its words speak of it");
+    }
+  };
+  say(task.say);
+  for (const LaterSentence& later : task.later) say(later.say);
+  for (const auto& [role, span] : mentioned_.metrics(measured_in(task)).roles)
     spoken.try_emplace(role, span, "its metrics measure it");
   const auto in_words = spoken;
   const auto place = [&](const Spelled& word) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
@@ -33,6 +34,9 @@ bool has_broken_part(const Model& model, const Task& task) {
   if (is_broken(model.layouts, task.layout) || is_broken(model.metrics, task.metrics) ||
       is_broken(model.templates, task.say))
     return true;
+  for (const LaterSentence& later : task.later) {
+    if (is_broken(model.templates, later.say)) return true;
+  }
   for (const Task::OtherCamera& other : task.cameras) {
     if (is_broken(model.cameras, other.camera)) return true;
   }
@@ -67,12 +71,14 @@ void check_things(Context& context, const Task& task, bool& poisoned) {
   const Model& model = context.model;
   const Scene& scene = model.scenes[task.scene];
   std::vector<ObjectId> seen;
-  for (const auto& [role, id] : task.things()) {
+  for (const auto& [role, id] : things_of(task)) {
     const Object& object = model.objects[id];
     poisoned = poisoned || object.broken;
     if (std::ranges::find(seen, id) != seen.end()) {
       context.report(Code::P0203, task.span,
-                     "`" + object.name + "` fills two roles of `" + task.name + "`");
+                     "`" + object.name + "` fills " +
+                         (role == RoleId::kNone ? "a role" : "two roles") + " of `" + task.name +
+                         "`" + (role == RoleId::kNone ? " and is a distractor" : ""));
       poisoned = true;
     }
     seen.push_back(id);
@@ -81,7 +87,13 @@ void check_things(Context& context, const Task& task, bool& poisoned) {
     const std::size_t of_two = static_cast<std::size_t>(role);
     Span span = of_two < 2 ? task.role_span[of_two] : task.span;
     for (const Task::Filled& filled : task.others) {
-      if (filled.role == role) span = filled.spans.front();
+      if (filled.role != role) continue;
+      const auto at = std::ranges::find(filled.objects, id) - filled.objects.begin();
+      span = filled.spans[static_cast<std::size_t>(at)];
+    }
+    if (role == RoleId::kNone) {
+      const auto at = std::ranges::find(task.part_distractors, id) - task.part_distractors.begin();
+      span = task.place(task.part_distractor_spans[static_cast<std::size_t>(at)]);
     }
     context
         .report(Situation::kNotInScene, span,

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include "compiler/define/fixture.h"
 #include "compiler/define/metrics.h"
 #include "compiler/define/motion.h"
 #include "compiler/define/role.h"
 #include "compiler/define/solution.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/define/thing.h"
 #include "compiler/define/wording.h"
@@ -114,18 +116,8 @@ struct TaskReader {
       ObjectId object = ObjectId::kNone;
       thing(object, bound(name));
       if (object == ObjectId::kNone) continue;
-      if (context.model.roles[*role].is_set && !task.is_object(object)) {
-        context
-            .report(Code::P1105, name.span,
-                    "`" + std::string(name.text) + "` is " +
-                        kind_of(context.model.objects[object]) +
-                        " of a fixture, and a set is "
-                        "filled with objects")
-            .label(context.model.roles[*role].span, "declared as a set")
-            .help("declare a role for each: `role NAME`");
-        poisoned = true;
+      if (context.model.roles[*role].is_set && !fits_set(name, object, filled.objects, *role))
         continue;
-      }
       if (std::find(filled.objects.begin(), filled.objects.end(), object) != filled.objects.end()) {
         context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is listed twice");
         poisoned = true;
@@ -147,6 +139,26 @@ struct TaskReader {
     const auto behind = std::find_if(task.others.begin(), task.others.end(),
                                      [&](const Task::Filled& old) { return old.role > *role; });
     task.others.insert(behind, std::move(filled));
+  }
+
+  // A set is filled with objects, or with parts.
+  bool fits_set(const syntax::Name& name, ObjectId id, const std::vector<ObjectId>& others,
+                RoleId role) {
+    const Object& object = context.model.objects[id];
+    const bool is_region = object.of && !object.of->is_part();
+    const bool is_mixed = !others.empty() && task.is_object(others.front()) != task.is_object(id);
+    if (!is_region && !is_mixed) return true;
+    const std::string what = "`" + std::string(name.text) + "` is " + kind_of(object) +
+                             (object.of ? " of a fixture" : "");
+    context
+        .report(Code::P1105, name.span,
+                what + (is_region ? ", and a set is filled with objects or with parts"
+                                  : ", and what stands before it is " +
+                                        std::string(kind_of(context.model.objects[others.front()]))))
+        .label(context.model.roles[role].span, "declared as a set")
+        .help("declare a role for each: `role NAME`");
+    poisoned = true;
+    return false;
   }
 
   void operator()(const syntax::FieldStmt& stmt) {
@@ -184,20 +196,32 @@ struct TaskReader {
   void operator()(const syntax::DistractorsStmt& stmt) {
     task.distractors.clear();
     task.distractor_spans.clear();
+    task.part_distractors.clear();
+    task.part_distractor_spans.clear();
     task.distractors_span = stmt.span;
     if (stmt.count) return;  // drawn when the roles are known
     for (const syntax::Name& name : stmt.objects) {
       ObjectId object = ObjectId::kNone;
-      field(object, context.symbols.objects, bound(name));
+      thing(object, bound(name));
       if (object == ObjectId::kNone) continue;
-      if (std::find(task.distractors.begin(), task.distractors.end(), object) !=
-          task.distractors.end()) {
+      const bool is_object = task.is_object(object);
+      auto& listed = is_object ? task.distractors : task.part_distractors;
+      if (std::ranges::find(listed, object) != listed.end()) {
         context.report(Code::P0203, name.span, "`" + std::string(name.text) + "` is listed twice");
         poisoned = true;
         continue;
       }
-      task.distractors.push_back(object);
-      task.distractor_spans.push_back(name.span);
+      if (!is_object && !context.model.objects[object].of->is_part()) {
+        context
+            .report(Code::P1105, name.span,
+                    "`" + std::string(name.text) +
+                        "` is a region of a fixture, and distractors are objects and parts")
+            .help("name the part that it belongs to");
+        poisoned = true;
+        continue;
+      }
+      listed.push_back(object);
+      (is_object ? task.distractor_spans : task.part_distractor_spans).push_back(name.span);
     }
   }
   // So many of these that have no role: every object draws its own number from the seed, its name
@@ -242,20 +266,42 @@ struct TaskReader {
   }
   void operator()(const syntax::SayStmt& stmt) {
     task.say_span = stmt.span;
-    if (const auto* name = std::get_if<syntax::Name>(&stmt.what)) {
-      return field(task.say, context.symbols.templates, bound(*name));
+    say(task.say, stmt.what);
+  }
+  // `to` has what was copied.
+  void say(TemplateId& to, const std::variant<syntax::Name, syntax::TemplateText>& what) {
+    if (const auto* name = std::get_if<syntax::Name>(&what)) {
+      return field(to, context.symbols.templates, bound(*name));
     }
-    syntax::TemplateText text = std::get<syntax::TemplateText>(stmt.what);
+    syntax::TemplateText text = std::get<syntax::TemplateText>(what);
     for (syntax::TemplatePart& part : text.parts) {
       if (auto* slot = std::get_if<syntax::Slot>(&part)) slot->name = bound(slot->name);
     }
-    const TemplateId copied = task.say;
-    task.say = add_template(context, text, {}, text.text.span, std::nullopt);
+    const TemplateId copied = to;
+    to = add_template(context, text, {}, text.text.span, std::nullopt);
     if (copied == TemplateId::kNone) return;
     // The same first word is the same verb, whatever its frame is called.
     const Template& before = context.model.templates[copied];
-    Template& now = context.model.templates[task.say];
+    Template& now = context.model.templates[to];
     if (now.frame == first_word(before.parts)) now.frame = before.frame;
+  }
+  // Those of one task are all that it says later: what was copied goes with the first.
+  std::optional<std::vector<LaterSentence>> copied_later = std::nullopt;
+  void operator()(const syntax::ThenStmt& stmt) {
+    if (!copied_later) copied_later = std::exchange(task.later, {});
+    if (!stmt.what) return;
+    LaterSentence later;
+    const std::size_t at = task.later.size();
+    if (at < copied_later->size()) later.say = (*copied_later)[at].say;
+    later.say_span = stmt.span;
+    say(later.say, *stmt.what);
+    syntax::MetricStmt when;
+    when.span = stmt.span;
+    when.name = {stmt.when_span, kWhenMetric};
+    when.readout = {stmt.when_span, plan::Readout::kAtEnd, stmt.when_span, stmt.when};
+    later.when = read_metric(context, *declared.file, when);
+    poisoned = poisoned || later.when.type.kind == TypeKind::kPoison;
+    task.later.push_back(std::move(later));
   }
   // After the roles: a new source or target drops what was said of the old one.
   void operator()(const syntax::ReferStmt& stmt) {

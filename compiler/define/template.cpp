@@ -185,7 +185,12 @@ Counted count_of(const Model& model, const Task& task, const Template& say, cons
   for (const ObjectId id : filled) words.push_back(*referring(model, task, id).text);
   const auto noun = common_noun(words);
   if (!noun) return {};
-  for (const ObjectId id : task.objects()) {
+  std::vector<ObjectId> others = task.objects();
+  // Drawers are told apart from the drawers that are there.
+  if (!task.is_object(filled.front())) {
+    for (const ObjectId part : parts_in_scene(model, task)) others.push_back(part);
+  }
+  for (const ObjectId id : others) {
     if (task.role_of(id) == slot.role) continue;
     words.push_back(model.objects[id].text.text);
     if (common_noun(words) == noun) return {CountFit::kNoun, id};

@@ -160,9 +160,17 @@ std::vector<ObjectId> parts_in_scene(const Model& model, const Task& task) {
 std::vector<ObjectId> denotable(const Model& model, const Task& task) {
   std::vector<ObjectId> all = task.objects();
   for (const ObjectId part : parts_in_scene(model, task)) {
-    if (has_look(model.objects[part]) || task.role_of(part) != RoleId::kNone) all.push_back(part);
+    if (has_look(model.objects[part]) || task.role_of(part) != RoleId::kNone ||
+        std::ranges::find(task.part_distractors, part) != task.part_distractors.end())
+      all.push_back(part);
   }
   return all;
+}
+
+std::vector<std::pair<RoleId, ObjectId>> things_of(const Task& task) {
+  std::vector<std::pair<RoleId, ObjectId>> things = task.things();
+  for (const ObjectId part : task.part_distractors) things.emplace_back(RoleId::kNone, part);
+  return things;
 }
 
 const char* kind_of(const Object& object) {

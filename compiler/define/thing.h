@@ -29,6 +29,9 @@ std::vector<ObjectId> parts_in_scene(const Model& model, const Task& task);
 // fill a role: what words may denote.
 std::vector<ObjectId> denotable(const Model& model, const Task& task);
 
+// Parts and regions that fill roles, with those, and parts that are distractors, which fill none.
+std::vector<std::pair<RoleId, ObjectId>> things_of(const Task& task);
+
 // "a part", "a region", "an object".
 const char* kind_of(const Object& object);
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "compiler/define/telling.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
@@ -218,9 +219,21 @@ bool has_negation(const Template& say) {
                      [](const Template::Part& part) { return part.slot && part.slot->avoid; });
 }
 
+bool has_negation(const Model& model, const Task& task) {
+  return has_negation(model.templates[task.say]) ||
+         std::any_of(task.later.begin(), task.later.end(), [&](const LaterSentence& later) {
+           return has_negation(model.templates[later.say]);
+         });
+}
+
 bool is_control(const Template& say) { return say.frame == "untold"; }
 
 bool asks_otherwise(const Model& model, const Task& a, const Task& b) {
+  // Other turns are asked for, or the same at another time.
+  if (a.later.size() != b.later.size() || !same_turns(model, a, b)) return true;
+  for (std::size_t i = 1; i < sentence_count(a); ++i) {
+    if (asks_otherwise(model, telling(a, i), telling(b, i))) return true;
+  }
   if (model.templates[a.say].frame != model.templates[b.say].frame) return true;
   return contradicts(model, a, b);
 }
@@ -234,9 +247,15 @@ bool contradicts(const Model& model, const Task& a, const Task& b) {
 }
 
 bool is_reworded(const Model& model, const Task& a, const Task& b) {
-  return has_negation(model.templates[a.say]) == has_negation(model.templates[b.say]) &&
-         !asks_otherwise(model, a, b) &&
-         words_of(model, a, Form::kWritten) != words_of(model, b, Form::kWritten);
+  if (has_negation(model, a) != has_negation(model, b) || asks_otherwise(model, a, b)) return false;
+  const auto differ = [&](const Task& here, const Task& there) {
+    return words_of(model, here, Form::kWritten) != words_of(model, there, Form::kWritten);
+  };
+  if (differ(a, b)) return true;
+  for (std::size_t i = 1; i < sentence_count(a); ++i) {
+    if (differ(telling(a, i), telling(b, i))) return true;
+  }
+  return false;
 }
 
 }  // namespace probe::sema

@@ -22,6 +22,8 @@ std::string first_word(const std::vector<Template::Part>& parts);
 
 // An instruction that mentions something it warns against.
 bool has_negation(const Template& say);
+// The same of any of a task's sentences.
+bool has_negation(const Model& model, const Task& task);
 
 // Words of the frame `untold`: a control, which says nothing of its task, or another task's words.
 // They are held neither to the scene nor to success, and may be none.

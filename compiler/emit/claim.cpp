@@ -3,6 +3,7 @@
 
 #include "compiler/define/claim.h"
 #include "compiler/define/support.h"
+#include "compiler/define/thing.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 
@@ -20,7 +21,7 @@ std::vector<std::uint32_t> shape_of_claim(const Model& model, const sema::Task& 
     shape.push_back(static_cast<std::uint32_t>(task.role_of(id)));
     if (model.exprs.names_objects) shape.push_back(static_cast<std::uint32_t>(id));
   }
-  for (const auto& [role, id] : task.things()) {
+  for (const auto& [role, id] : sema::things_of(task)) {
     shape.push_back(static_cast<std::uint32_t>(role));
     shape.push_back(static_cast<std::uint32_t>(id));
   }

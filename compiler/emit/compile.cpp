@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compiler/check/analyze.h"
+#include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/emit/analyzed.h"
 #include "compiler/emit/emit.h"
@@ -96,7 +97,7 @@ std::vector<ReferringWords> referring_words(const sema::Model& model) {
     for (const sema::ObjectId object : task.objects()) {
       if (task.role_of(object) == sema::RoleId::kNone) continue;
       const sema::Referring said = sema::referring(model, task, object);
-      if (said.text == nullptr || task.prompt.find(*said.text) == std::string::npos) continue;
+      if (said.text == nullptr || sema::whole_prompt(task).find(*said.text) == std::string::npos) continue;
       all.push_back({task.name, *said.text, model.objects[object].name, said.phrase != nullptr});
     }
   }

@@ -101,9 +101,11 @@ class Emitter {
   void add_scene(sema::SceneId id);
 
   // Tasks of one shape share one program, which is made once. Nothing when something was reported.
+  // `steps`: after which it is judged.
   std::optional<std::uint32_t> add_program(const sema::Task& task,
                                            std::span<const sema::Metric> metrics,
-                                           const std::vector<lower::Body>& bodies);
+                                           const std::vector<lower::Body>& bodies,
+                                           std::uint64_t steps);
   std::uint32_t keep_program(lower::Program program);
 
   // P0603 at once; P0602 when a metric is constant in every program and for every horizon that has
@@ -136,6 +138,10 @@ class Emitter {
   std::uint32_t region_named(const std::string& name, plan::BodyKind kind, std::uint32_t index);
   void add_skills(const sema::Task& task, const std::vector<lower::Body>& bodies,
                   std::uint32_t index);
+  // What is said in the course of the episode, with what brings it.
+  void add_later(const sema::Task& task, const std::vector<lower::Body>& bodies,
+                 std::uint32_t index);
+  bool holds_where_it_begins(const sema::Task& task, const lower::Program& condition) const;
   void add_claims(const sema::Task& task, const std::vector<lower::Body>& bodies,
                   std::uint32_t index);
   void add_put(const sema::Task& task, const sema::Put& put, ObjectId where,

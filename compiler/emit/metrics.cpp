@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "compiler/define/telling.h"
 #include "compiler/define/views.h"
 #include "compiler/emit/emitter.h"
 #include "compiler/lower/intervals.h"
@@ -10,7 +11,8 @@ namespace probe::emit {
 
 std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
                                                   std::span<const sema::Metric> metrics,
-                                                  const std::vector<lower::Body>& bodies) {
+                                                  const std::vector<lower::Body>& bodies,
+                                                  std::uint64_t steps) {
   std::vector<std::uint32_t> shape = lower::shape_of(model_, metrics, bodies);
   const sema::CameraId camera = sema::views_of(model_, task).front().camera;
   // What is seen from elsewhere is another number.
@@ -26,7 +28,7 @@ std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
     known = programs_by_shape_.emplace(std::move(shape), keep_program(std::move(*program))).first;
   }
   // What is constant depends on how long an episode is.
-  note_constants(known->second, task.horizon,
+  note_constants(known->second, steps,
                  model_.robots[model_.scenes[task.scene].robot].control_hz,
                  lower::room_of(model_, task));
   return known->second;
@@ -99,9 +101,15 @@ void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double 
 void Emitter::report_constants() {
   for (const auto& [place, constant] : constants_) {
     if (constant.varies || constant.values.size() != 1) continue;
-    Diagnostic& said = diagnostics_.report(
-        Code::P0602, constant.metric.span,
-        "metric `" + constant.metric.name + "` is always " + *constant.values.begin());
+    const std::string& value = *constant.values.begin();
+    const bool brings = constant.metric.name == sema::kWhenMetric;
+    Diagnostic& said =
+        diagnostics_.report(Code::P0602, constant.metric.span,
+                            (brings ? std::string("what brings the next sentence")
+                                    : "metric `" + constant.metric.name + "`") +
+                                " is always " + value);
+    if (brings)
+      said.point(value == "true" ? "it comes after the first step" : "it never comes in time");
     for (const Span& set : constant.metric.empty) said.label(set, "nothing is in it");
   }
 }

@@ -122,6 +122,15 @@ std::vector<lower::Body> PlanBodies::of(const plan::TaskRecord& task) {
       }
     }
   }
+  for (const plan::RoleRecord& role : plan::roles_of(plan_.tables(), task).things) {
+    if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kRegion)) continue;
+    const auto known = std::ranges::find(model_.roles, plan_.text(role.name), &sema::Role::name);
+    if (plan::is_part_distractor(role)) {
+      out[role.first].role = lower::kDistractorRole;
+    } else if (known != model_.roles.end()) {
+      out[role.first].role = static_cast<std::uint32_t>(known - model_.roles.begin());
+    }
+  }
   return out;
 }
 

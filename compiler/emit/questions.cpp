@@ -79,7 +79,8 @@ void Emitter::add_questions() {
     record.b = asked.b;
     if (asked.judged) {
       const sema::Task& task = model_.tasks[asked.task];
-      const auto program = add_program(task, {&*asked.judged, 1}, lower::bodies_of(model_, task));
+      const auto program = add_program(task, {&*asked.judged, 1}, lower::bodies_of(model_, task),
+                                       task.horizon);
       if (!program) continue;  // reported
       record.program = *program;
     }

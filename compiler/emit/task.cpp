@@ -59,9 +59,10 @@ const std::vector<plan::Slice>& Emitter::placements_of(std::span<const sema::Sta
 
 namespace {
 
-std::uint32_t body_in_role(const std::vector<lower::Body>& bodies, sema::RoleId role) {
+std::uint32_t body_of(const std::vector<lower::Body>& bodies, const sema::OfFixture& part) {
   const auto at = std::ranges::find_if(bodies, [&](const lower::Body& body) {
-    return body.kind == plan::BodyKind::kPart && body.role == static_cast<std::uint32_t>(role);
+    return body.kind == plan::BodyKind::kPart && body.part == part.part &&
+           body.index == static_cast<std::uint32_t>(part.fixture);
   });
   return static_cast<std::uint32_t>(at - bodies.begin());
 }
@@ -100,11 +101,18 @@ plan::Slice Emitter::add_roles(const sema::Task& task, const std::vector<lower::
         const std::uint32_t fixture = fixture_index(model_.scenes[task.scene], of.fixture);
         return records().fixtures[fixture].parts.first + of.part;
       };
-      next = is_part ? body_in_role(bodies, role)
+      next = is_part ? body_of(bodies, of)
                      : region_named(model_.objects[thing].name, plan::BodyKind::kPart, owner());
       add(writer_.text(model_.roles[id].name),
-          is_part ? plan::RoleKind::kPart : plan::RoleKind::kRegion, 1);
+          model_.roles[id].is_set ? plan::RoleKind::kPartOfSet
+          : is_part               ? plan::RoleKind::kPart
+                                  : plan::RoleKind::kRegion,
+          1);
     }
+  }
+  for (const ObjectId part : task.part_distractors) {
+    next = body_of(bodies, *model_.objects[part].of);
+    add({}, plan::RoleKind::kPartDistractor, 1);
   }
   if (rows.empty()) return {};
   const auto [at, is_new] = roles_.try_emplace(std::move(key), plan::Slice{});
@@ -155,6 +163,40 @@ plan::Slice Emitter::add_moves(const sema::Task& task) {
   return plan::append(records().moves, std::span<const plan::MoveRecord>(rows));
 }
 
+void Emitter::add_later(const sema::Task& task, const std::vector<lower::Body>& bodies,
+                        std::uint32_t index) {
+  for (const sema::LaterSentence& later : task.later) {
+    // Behind the last step nothing is said any more.
+    const auto program =
+        add_program(task, {&later.when, 1}, bodies, task.horizon > 1 ? task.horizon - 1 : 1);
+    if (!program) return;  // reported
+    if (holds_where_it_begins(task, programs_[*program])) {
+      diagnostics_.report(Code::P0602, task.place(later.when.span),
+                          "what brings the next sentence holds where `" + task.name + "` begins")
+          .point("the sentence before it is said in one step alone");
+    }
+    records().later.push_back({index, *program, writer_.text(later.text), {}});
+  }
+}
+
+// As far as joints of fixtures say, in all of its starts.
+bool Emitter::holds_where_it_begins(const sema::Task& task, const lower::Program& condition) const {
+  lower::Room room = lower::room_of(model_, task);
+  const double hz = model_.robots[model_.scenes[task.scene].robot].control_hz;
+  const auto is_true = [&](std::uint64_t horizon) {
+    const lower::Findings found = lower::find_constants(condition, horizon, hz, room);
+    return std::ranges::any_of(found.constants,
+                               [](const lower::ConstantMetric& one) { return one.value; });
+  };
+  if (room.joints.empty() || is_true(task.horizon)) return false;  // said of the condition itself
+  return !task.starts.empty() && std::ranges::all_of(task.starts, [&](const sema::Start& start) {
+    const std::vector<double> joints = joint_starts_of(model_, task, start);
+    for (std::size_t i = 0; i < joints.size() && i < room.joints.size(); ++i)
+      room.joints[i] = {joints[i], joints[i]};
+    return is_true(1);
+  });
+}
+
 void Emitter::add_task(const sema::Task& task) {
   const sema::Scene& scene = model_.scenes[task.scene];
   if (!model_.robots[scene.robot].model) return;
@@ -182,7 +224,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.camera = cameras_[views.front().camera];
   if (has_names(views)) record.views = add_views(views, task.scene);
   record.light = lights_[light_of(model_, task)];
-  const auto program = add_program(task, task.judged, bodies);
+  const auto program = add_program(task, task.judged, bodies, task.horizon);
   if (!program) return;
   record.program = *program;
   record.source = objects_[task.source];
@@ -219,6 +261,7 @@ void Emitter::add_task(const sema::Task& task) {
   }
   add_span(plan::SpanKind::kTasks, index, task.span);
   records().tasks.push_back(record);
+  add_later(task, bodies, index);
   add_claims(task, bodies, index);
   add_skills(task, bodies, index);
 }

@@ -296,7 +296,7 @@ class Walker {
     name(stmt.as, Kind::kView);
   }
   void operator()(const DistractorsStmt& stmt) {
-    names(stmt.objects, Kind::kObject);
+    for (const Name& object : stmt.objects) thing(object, Kind::kObject | Kind::kFixture);
     if (stmt.count) bound(stmt.count->span, stmt.count->binder);
     if (stmt.seed) bound(stmt.seed->span, stmt.seed->binder);
   }
@@ -307,6 +307,15 @@ class Walker {
   void operator()(const SayStmt& stmt) {
     if (const auto* said = std::get_if<Name>(&stmt.what)) return name(*said, Kind::kTemplate);
     text(std::get<TemplateText>(stmt.what));
+  }
+  void operator()(const ThenStmt& stmt) {
+    if (!stmt.what) return;
+    if (const auto* said = std::get_if<Name>(&*stmt.what)) {
+      name(*said, Kind::kTemplate);
+    } else {
+      text(std::get<TemplateText>(*stmt.what));
+    }
+    expr(stmt.when);
   }
   void operator()(const ReferStmt& stmt) {
     name(stmt.role, Kind::kRole);

@@ -25,7 +25,7 @@ void set_regions(Body& body, const std::vector<sema::Region>& regions, std::uint
 }
 
 // The part that a thing is, or that has it, gets its role.
-void fill_role(const sema::Model& model, sema::RoleId role, sema::ObjectId thing,
+void fill_role(const sema::Model& model, std::uint32_t role, sema::ObjectId thing,
                std::vector<Body>& bodies) {
   const sema::Object& object = model.objects[thing];
   for (Body& body : bodies) {
@@ -34,11 +34,11 @@ void fill_role(const sema::Model& model, sema::RoleId role, sema::ObjectId thing
         body.part != object.of->part)
       continue;
     if (object.of->is_part()) {
-      body.role = static_cast<std::uint32_t>(role);
+      body.role = role;
       continue;
     }
     const sema::Fixture& fixture = model.fixtures[object.of->fixture];
-    body.filled.push_back({static_cast<std::uint32_t>(role), *object.of->region,
+    body.filled.push_back({role, *object.of->region,
                            &fixture.regions[*object.of->region].region, object.name});
   }
 }
@@ -81,7 +81,10 @@ std::vector<Body> bodies_of(const sema::Model& model, const sema::Task& task) {
                         static_cast<std::uint32_t>(sema::RoleId::kNone), i});
     }
   }
-  for (const auto& [role, thing] : task.things()) fill_role(model, role, thing, bodies);
+  for (const auto& [role, thing] : task.things())
+    fill_role(model, static_cast<std::uint32_t>(role), thing, bodies);
+  for (const sema::ObjectId part : task.part_distractors)
+    fill_role(model, kDistractorRole, part, bodies);
   return bodies;
 }
 

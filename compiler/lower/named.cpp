@@ -54,7 +54,12 @@ bool Lowering::fits(const Span& span, const Value& value, char wanted, std::stri
   const Body& body = bodies_[value.index];
   std::string found = "`" + body.name + "`";
   if (is_region) found = "region `" + value.region->name + "` of `" + body.name + "`";
-  fail(span, std::string(what) + " takes " + name + ", found " + found);
+  Diagnostic& said = diagnostics_.report(Code::P0601, span,
+                                         std::string(what) + " takes " + name + ", found " + found);
+  ok_ = false;
+  // Of a set that has both, what is asked of objects alone is asked of its objects.
+  if (body.kind == plan::BodyKind::kPart && body.role == kDistractorRole)
+    said.help("`distractors & objects` are those without parts of fixtures, `distractors & parts` the parts");
   return false;
 }
 

@@ -524,6 +524,14 @@ struct Motion {
   Span span;
 };
 
+// What is said in place of the sentence before it, once a condition has held.
+struct LaterSentence {
+  TemplateId say = TemplateId::kNone;
+  Span say_span;
+  Metric when;       // read at the end of every step
+  std::string text;  // computed
+};
+
 struct Task {
   std::string name;
   Span span;       // of its name
@@ -554,8 +562,11 @@ struct Task {
   };
   std::vector<Filled> others;  // other roles, ascending
   std::vector<ObjectId> distractors;
+  std::vector<ObjectId> part_distractors;  // parts of fixtures that may be taken for another
+  std::vector<Span> part_distractor_spans;
   std::vector<ObjectId> placed;  // in no role: what the layout puts into the scene by name
   TemplateId say = TemplateId::kNone;
+  std::vector<LaterSentence> later;  // behind `say`, in their order
   std::map<RoleId, Spelled> refer;  // by which phrase
   std::vector<PoseOverride> poses;
   std::vector<JointStart> joint_starts;
@@ -663,6 +674,7 @@ struct Model {
   Table<PredicateId, Predicate> predicates;
   Table<MetricsId, Metrics> metrics;
   Table<RoleId, Role> roles;  // source and target are the first two
+  bool has_part_distractors = false;  // some task has a part among its distractors
   Table<TaskId, Task> tasks;
   Table<SetId, TaskSet> sets;
   Table<SuiteId, Suite> suites;

@@ -66,6 +66,7 @@ Task words_alone(const Task& task) {
   words.others = task.others;
   words.declared_objects = task.declared_objects;
   words.distractors = task.distractors;
+  words.part_distractors = task.part_distractors;
   words.placed = task.placed;
   words.say = task.say;
   words.refer = task.refer;
@@ -237,6 +238,8 @@ std::optional<Refusal> Prover::why_not(const Task& task, TemplateId say) {
 
 Proved Prover::prove(const Task& task, std::uint64_t seed) {
   Proved proved;
+  // A wording stands for all that is said, and one sentence of several is not.
+  if (!task.later.empty()) return proved;
   const Template& own = model_.templates[task.say];
   const std::vector<Choice> sources = choices(task, true, mentions_role(own, "source"));
   const std::vector<Choice> targets = choices(task, false, mentions_role(own, "target"));

@@ -852,6 +852,12 @@ struct SayStmt {
   Span span;
   std::variant<Name, TemplateText> what;  // a template by name, or words on the spot
 };
+struct ThenStmt {  // `then say put_in when opened(target)`; `then none` takes copied ones away
+  Span span;
+  std::optional<std::variant<Name, TemplateText>> what;  // as of `say`
+  ExprId when;
+  Span when_span;
+};
 struct ReferStmt {
   Span span;
   Name role;
@@ -901,7 +907,7 @@ struct SolutionStmt {  // `none` is the empty list
   std::vector<SkillNode> skills;
 };
 using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
-                              ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt,
+                              ThenStmt, ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt,
                               MovesStmt, SolutionStmt, MetricStmt, RoleStmt>;
 
 struct TaskDecl {

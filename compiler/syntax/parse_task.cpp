@@ -99,19 +99,32 @@ TaskStmt Parser::task_distractors() {
     out.seed = bound_integer();
     return out;
   }
-  out.objects = names();
+  out.objects = comma_list([this] { return thing(); });
   const bool none = out.objects.size() == 1 && out.objects.front().text == "none";
   if (none) out.objects.clear();
   return out;
 }
 
+std::variant<Name, TemplateText> Parser::said() {
+  if (at(TokenKind::kString)) return template_text();
+  return name();
+}
+
 TaskStmt Parser::task_say() {
   SayStmt out;
-  if (at(TokenKind::kString)) {
-    out.what = template_text();
-  } else {
-    out.what = name();
-  }
+  out.what = said();
+  return out;
+}
+
+TaskStmt Parser::task_then() {
+  ThenStmt out;
+  if (accept_word("none")) return out;
+  expect_word("say");
+  out.what = said();
+  expect_word("when");
+  const std::uint32_t begin = mark();
+  out.when = expr();
+  out.when_span = since(begin);
   return out;
 }
 

@@ -282,6 +282,8 @@ class Parser {
   TaskStmt task_camera();
   TaskStmt task_distractors();
   TaskStmt task_say();
+  std::variant<Name, TemplateText> said();
+  TaskStmt task_then();
   TaskStmt task_refer();
   TaskStmt task_pose();
   TaskStmt task_start();

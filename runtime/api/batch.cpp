@@ -194,6 +194,12 @@ int32_t vlaprobe_batch_metric_is_truth(const vlaprobe_batch* batch, size_t metri
   return metric < metrics.size() && metrics[metric].is_truth;
 }
 
+const char* vlaprobe_batch_instruction(const vlaprobe_batch* batch, size_t world) {
+  if (batch == nullptr || world >= batch->worlds->count()) return nullptr;
+  const api::World* const one = batch->worlds->world(world);
+  return one == nullptr ? nullptr : one->stage().told().text().c_str();
+}
+
 int32_t vlaprobe_batch_hash(const vlaprobe_batch* batch, size_t world, char hash[65],
                             vlaprobe_error* error) {
   return call(error, [&]() -> Status {

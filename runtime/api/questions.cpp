@@ -156,6 +156,8 @@ class Asking : public policy::Policy {
     question_.openness = robot.openness;
     question_.joints = array_of(std::span<const double>(robot.joints), {robot.joints.size()});
     question_.step = seen.step;
+    prompt_ = std::string(seen.prompt);
+    question_.instruction = prompt_.c_str();
     question_.pictures = pictures_.data();
     question_.picture_count = pictures_.size();
     return questions_->ask(question_);

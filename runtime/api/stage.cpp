@@ -174,6 +174,10 @@ const char* vlaprobe_stage_metric(const vlaprobe_stage* stage, size_t metric) {
   return judge.metric_name(static_cast<std::uint32_t>(metric)).c_str();
 }
 
+const char* vlaprobe_stage_instruction(const vlaprobe_stage* stage) {
+  return stage == nullptr ? nullptr : stage->world->stage().told().text().c_str();
+}
+
 int32_t vlaprobe_stage_metric_is_truth(const vlaprobe_stage* stage, size_t metric) {
   if (stage == nullptr) return 0;
   const vm::Judge& judge = stage->world->stage().judge();

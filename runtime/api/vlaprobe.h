@@ -165,7 +165,7 @@ VLAPROBE_EXPORT const char* vlaprobe_plan_diagnostics(const vlaprobe_plan* plan)
 
 typedef struct vlaprobe_task {
   const char* name;
-  const char* instruction; /* what a policy is told */
+  const char* instruction; /* what a policy is told, at first where it changes */
   int64_t baseline;        /* the task that this one is a variant of, -1 of none */
   int32_t episodes;        /* starts, numbered from 0 */
   int32_t horizon;         /* control steps */
@@ -291,6 +291,8 @@ VLAPROBE_EXPORT int32_t vlaprobe_stage_picture(const vlaprobe_stage* stage, size
 /* Names, for as long as the stage: NULL for an index that there is not. */
 VLAPROBE_EXPORT const char* vlaprobe_stage_camera(const vlaprobe_stage* stage, size_t camera);
 VLAPROBE_EXPORT const char* vlaprobe_stage_metric(const vlaprobe_stage* stage, size_t metric);
+/* What a policy is told now: the task's instruction, or what it has become. */
+VLAPROBE_EXPORT const char* vlaprobe_stage_instruction(const vlaprobe_stage* stage);
 VLAPROBE_EXPORT int32_t vlaprobe_stage_metric_is_truth(const vlaprobe_stage* stage, size_t metric);
 VLAPROBE_EXPORT const char* vlaprobe_stage_joint(const vlaprobe_stage* stage, size_t joint);
 VLAPROBE_EXPORT const char* vlaprobe_stage_object(const vlaprobe_stage* stage, size_t object);
@@ -386,6 +388,8 @@ VLAPROBE_EXPORT const char* vlaprobe_batch_fault(const vlaprobe_batch* batch, si
 VLAPROBE_EXPORT const char* vlaprobe_batch_camera(const vlaprobe_batch* batch, size_t camera);
 VLAPROBE_EXPORT const char* vlaprobe_batch_metric(const vlaprobe_batch* batch, size_t metric);
 VLAPROBE_EXPORT int32_t vlaprobe_batch_metric_is_truth(const vlaprobe_batch* batch, size_t metric);
+/* What a policy is told now; NULL before a world's first episode. */
+VLAPROBE_EXPORT const char* vlaprobe_batch_instruction(const vlaprobe_batch* batch, size_t world);
 /* As vlaprobe_stage_hash(). */
 VLAPROBE_EXPORT int32_t vlaprobe_batch_hash(const vlaprobe_batch* batch, size_t world,
                                             char hash[65], vlaprobe_error* error);

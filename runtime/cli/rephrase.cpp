@@ -22,6 +22,7 @@
 #include "runtime/base/say.h"
 #include "runtime/cli/load.h"
 #include "runtime/compile/library.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/starts_hash.h"
 
 namespace probe::cli {
@@ -86,7 +87,10 @@ std::optional<rephrase::Evaluation> evaluation(const std::string& file, const As
     exit = analysed.exit;
     if (!analysed.text) return std::nullopt;
     for (const sema::Task& task : analysed.text->model.tasks) {
-      if (!task.abstract && task.complete) all.instructions.push_back({task.prompt, task.name});
+      if (task.abstract || !task.complete) continue;
+      all.instructions.push_back({task.prompt, task.name});
+      for (const sema::LaterSentence& later : task.later)
+        all.instructions.push_back({later.text, task.name});
     }
     return all;
   }
@@ -95,9 +99,11 @@ std::optional<rephrase::Evaluation> evaluation(const std::string& file, const As
     exit = report(plan.failure());
     return std::nullopt;
   }
-  for (const plan::TaskRecord& task : plan->tasks())
-    all.instructions.push_back(
-        {std::string(plan->text(task.prompt)), std::string(plan->text(task.name))});
+  for (std::uint32_t t = 0; t < plan->tasks().size(); ++t) {
+    for (const std::string_view sentence : plan::sentences_of(plan->tables(), t))
+      all.instructions.push_back(
+          {std::string(sentence), std::string(plan->text(plan->tasks()[t].name))});
+  }
   return all;
 }
 

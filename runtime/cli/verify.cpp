@@ -7,6 +7,7 @@
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/load.h"
+#include "runtime/plan/ids.h"
 
 namespace probe::cli {
 namespace {
@@ -21,11 +22,10 @@ struct Counts {
 };
 
 Counts count(const plan::Plan& plan) {
-  std::set<std::array<std::uint8_t, 32>> starts, judges;
-  std::set<std::string_view> prompts;
-  for (const plan::TaskRecord& task : plan.tasks()) {
-    judges.insert(task.judge_id);
-    prompts.insert(plan.text(task.prompt));
+  std::set<std::array<std::uint8_t, 32>> starts, judges, prompts;
+  for (std::uint32_t t = 0; t < plan.tasks().size(); ++t) {
+    judges.insert(plan.tasks()[t].judge_id);
+    prompts.insert(plan::prompt_id(plan.tables(), t).bytes);
   }
   for (const plan::EpisodeRecord& episode : plan.episodes()) starts.insert(episode.start_id);
   return {plan.tables().code.size(), starts.size(), prompts.size(), judges.size()};

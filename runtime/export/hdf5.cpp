@@ -42,6 +42,7 @@ class Hdf5 final : public Sink {
     text(group, "task", header.task);
     text(group, "policy", header.policy);
     text(group, "prompt", header.prompt);
+    if (!header.later.empty()) texts(group, "then", header.later);
     text(group, "plan_root", to_hex(header.plan_root));
     text(group, "episode_id", to_hex(header.episode_id));
     text(group, "start_id", to_hex(header.start_id));

@@ -78,6 +78,7 @@ Json episode_json(const store::ResultRow& row, const store::Trace& trace) {
   json["seed"] = header.seed;
   json["policy"] = header.policy;
   json["prompt"] = header.prompt;
+  if (!header.later.empty()) json["then"] = header.later;
   json["plan_root"] = to_hex(header.plan_root);
   json["episode_id"] = to_hex(header.episode_id);
   json["start_id"] = to_hex(header.start_id);

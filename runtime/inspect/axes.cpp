@@ -7,6 +7,7 @@
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/ids.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/shakes.h"
 
@@ -42,7 +43,7 @@ std::vector<std::pair<std::string_view, std::string_view>> others_of_things(
   std::vector<std::pair<std::string_view, std::string_view>> all;
   for (const plan::RoleRecord& role : plan::roles_of(plan.tables(), task).things) {
     const std::string_view name = plan.text(role.name);
-    if (name != "source" && name != "target")
+    if (name != "source" && name != "target" && !plan::is_part_distractor(role))
       all.emplace_back(name, plan::thing_in(plan.tables(), task, role));
   }
   std::ranges::sort(all);
@@ -79,10 +80,27 @@ std::string frame_of(const plan::Plan& plan, const plan::TaskRecord& task) {
     names.emplace_back(plan.text(plan.objects()[plan.bodies(task)[i].index].text),
                        "{" + plan::label_of_body(plan.tables(), roles, i) + "}");
   }
+  // What parts are called, too; a region without a name of its own is called as its part.
+  for (const plan::RoleRecord& role : roles.things) {
+    if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kRegion)) continue;
+    const std::uint32_t part = plan.bodies(task)[role.first].index;
+    names.emplace_back(plan.text(plan.parts()[part].text),
+                       "{" + std::string(plan.text(role.name)) + "}");
+  }
   std::stable_sort(names.begin(), names.end(),
                    [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
   for (const auto& [name, role] : names) replace_all(text, name, role);
   return text;
+}
+
+// Whether the same sentences come later, the same brings them.
+bool same_later(const plan::Plan& plan, std::uint32_t a, std::uint32_t b) {
+  return std::ranges::equal(
+      plan::later_of(plan.tables(), a), plan::later_of(plan.tables(), b),
+      [&](const plan::LaterRecord& p, const plan::LaterRecord& q) {
+        return plan.text(p.text) == plan.text(q.text) &&
+               plan.programs()[p.program].hash == plan.programs()[q.program].hash;
+      });
 }
 
 // Whether one is the other's baseline and the compiler says that the axis does not move between
@@ -226,7 +244,10 @@ std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord&
 Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
   const plan::TaskRecord& a = plan.tasks()[first];
   const plan::TaskRecord& b = plan.tasks()[second];
-  const bool same_distractors = distractors(plan, a) == distractors(plan, b);
+  const bool same_distractors = distractors(plan, a) == distractors(plan, b),
+             same_part_distractors = std::ranges::is_permutation(
+                 plan::part_distractors_of(plan.tables(), a),
+                 plan::part_distractors_of(plan.tables(), b));
   // Scenes, cameras and lights are compared by content: by those parts of starts without objects.
   plan::IdHasher hasher(plan.tables());
   const auto ours = hasher.start_parts(a, {}), theirs = hasher.start_parts(b, {});
@@ -261,7 +282,7 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
       case plan::Axis::kObjectOther:
         return !same_others(plan, a, b);
       case plan::Axis::kDistractors:
-        return !same_distractors;
+        return !same_distractors || !same_part_distractors;
       case plan::Axis::kLayout:
         return !same_layout(plan, a, b, same_distractors);
       case plan::Axis::kScene:
@@ -303,7 +324,7 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   Difference found;
   for (const plan::AxisInfo& info : plan::kAxisTable)
     found.axes |= moves(info.axis) ? bit(info.axis) : 0;
-  found.language = frame_of(plan, a) != frame_of(plan, b);
+  found.language = frame_of(plan, a) != frame_of(plan, b) || !same_later(plan, first, second);
   return found;
 }
 

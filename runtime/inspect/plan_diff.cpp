@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "runtime/inspect/claims_json.h"
+#include "runtime/inspect/later_json.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/skills_json.h"
 
@@ -27,7 +28,7 @@ Changes compare(const plan::Plan& a, std::uint32_t our_task, const plan::Plan& b
   Changes found;
   found.claims = same_claims(a, our_task, b, their_task);
   found.solution = same_solution(a, our_task, b, their_task);
-  found.prompt = a.text(ours.prompt) == b.text(theirs.prompt);
+  found.prompt = same_prompt(a, our_task, b, their_task);
   found.judge = ours.judge_id == theirs.judge_id;
   const auto here = a.episodes(ours);
   const auto there = b.episodes(theirs);

@@ -23,7 +23,10 @@ void add_roles(const plan::Plan& plan, const plan::TaskRecord& task, Json& json)
   for (const plan::RoleRecord& role : roles.things) {
     const std::string name(plan.text(role.name));
     const Json thing(plan::thing_in(plan.tables(), task, role));
-    if (name == "source" || name == "target") {
+    if (plan::is_part_distractor(role)) continue;
+    if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kPartOfSet)) {
+      json["roles"][name].push_back(thing);
+    } else if (name == "source" || name == "target") {
       json[name] = thing;
     } else {
       json["roles"][name] = thing;
@@ -37,6 +40,8 @@ void add_roles(const plan::Plan& plan, const plan::TaskRecord& task, Json& json)
                                      : names_of(role.first, role.count);
   }
   json["distractors"] = names_of(roles.distractors.first, roles.distractors.count);
+  for (const std::string_view part : plan::part_distractors_of(plan.tables(), task))
+    json["distractors"].push_back(part);
   for (const plan::RoleRecord& role : roles.others) {
     if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kPlaced))
       json["placed"] = names_of(role.first, role.count);

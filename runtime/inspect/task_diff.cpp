@@ -9,6 +9,7 @@
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/fixture_json.h"
+#include "runtime/inspect/later_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
 #include "runtime/inspect/skills_json.h"
@@ -22,7 +23,7 @@ namespace {
 
 // What only some tasks have; it stands below what all of them have.
 constexpr const char* kOfSome[] = {"surface", "law",    "placed", "joints",
-                                   "idle",    "varied", "claims", "solution"};
+                                   "idle",    "varied", "claims", "solution", "then"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -55,12 +56,15 @@ Json side(const plan::Plan& plan, std::uint32_t index) {
   add_claims(plan, index, said);
   if (said.contains("claims")) json["claims"] = claims_text(said["claims"]);
   add_solution(plan, index, json);
+  add_later(plan, index, said);
+  if (said.contains("then")) json["then"] = later_text(said["then"]);
   json["instructions"] = plan.code(plan.programs()[task.program]).size();
   json["episodes"] = task.episodes.count;
   return json;
 }
 
-Json equal_ids(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
+Json equal_ids(const plan::Plan& plan, std::uint32_t first, std::uint32_t second) {
+  const plan::TaskRecord &a = plan.tasks()[first], &b = plan.tasks()[second];
   const auto ours = plan.episodes(a);
   const auto theirs = plan.episodes(b);
   std::size_t starts = 0, episodes = 0;
@@ -71,7 +75,7 @@ Json equal_ids(const plan::Plan& plan, const plan::TaskRecord& a, const plan::Ta
   return {{"starts", starts},
           {"episodes", episodes},
           {"of", std::max(ours.size(), theirs.size())},
-          {"prompt", plan.text(a.prompt) == plan.text(b.prompt)},
+          {"prompt", same_prompt(plan, first, plan, second)},
           {"judge", a.judge_id == b.judge_id},
           {"program", plan.programs()[a.program].hash == plan.programs()[b.program].hash}};
 }
@@ -121,7 +125,7 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   json["declared_axes"] = a_varies   ? Json(plan::moved_axes(plan.tables(), a))
                           : b_varies ? Json(plan::moved_axes(plan.tables(), b))
                                      : Json();
-  json["equal"] = equal_ids(plan, a, b);
+  json["equal"] = equal_ids(plan, first, second);
   json["left"] = side(plan, first);
   json["right"] = side(plan, second);
   // As high as the robot's and the objects' ground: told where it is another one.

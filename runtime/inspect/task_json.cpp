@@ -14,6 +14,7 @@
 #include "runtime/inspect/axes.h"
 #include "runtime/inspect/claims_json.h"
 #include "runtime/inspect/fixture_json.h"
+#include "runtime/inspect/later_json.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
@@ -71,6 +72,7 @@ Json summarise(const plan::Plan& plan, std::uint32_t index,
   json["axes"] = plan::moved_axes(plan.tables(), task);
   json["categories"] = categories;
   json["prompt"] = plan.text(task.prompt);
+  add_later(plan, index, json);
   json["episodes"] = task.episodes.count;
   return json;
 }
@@ -200,7 +202,7 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
   json["settle_s"] = task.settle;
   json["allow"] = task.allow.length == 0 ? Json() : Json(plan.text(task.allow));
   json["distances_m"] = Json::array();
-  json["ids"] = {{"prompt", to_hex(plan::prompt_id(plan.text(task.prompt)))},
+  json["ids"] = {{"prompt", to_hex(plan::prompt_id(plan.tables(), index))},
                  {"judge", hex(task.judge_id)},
                  {"starts", Json::array()},
                  {"episodes", Json::array()}};
@@ -232,7 +234,7 @@ std::string list_text(const Json& list) {
   const std::size_t room = before + kLeast < kScreen ? kScreen - before : kLeast;
   std::string text;
   for (const Json& task : list) {
-    const auto lines = lines_of(task["prompt"].text(), room);
+    const auto lines = lines_of(whole_prompt(task), room);
     fmt::format_to(std::back_inserter(text), "{:<{}}  {:>4}  {}\n", task["task"].get<std::string>(),
                    width, task["episodes"].get<std::size_t>(), lines[0]);
     for (std::size_t i = 1; i < lines.size(); ++i)
@@ -303,6 +305,9 @@ std::string describe_text(const Json& task) {
   const auto word = [&](const char* key) { line(key, task[key].get<std::string>()); };
   word("task");
   word("prompt");
+  if (task.contains("then")) {
+    for (const Json& sentence : later_text(task["then"])) line("then", sentence.text());
+  }
   for (const char* role : {"source", "target"})
     line(role, task[role].is_null() ? "none" : task[role].get<std::string>());
   if (task.contains("roles")) {

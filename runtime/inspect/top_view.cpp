@@ -12,6 +12,7 @@
 #include "runtime/inspect/checked_urdf.h"
 #include "runtime/inspect/ground_image.h"
 #include "runtime/inspect/top_fixtures.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
 #include "runtime/robot/kinematics.h"
@@ -201,7 +202,7 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   const plan::RobotRecord& robot = plan.robots()[scene.robot];
   TopView view;
   view.task = plan.text(task.name);
-  view.prompt = plan.text(task.prompt);
+  view.prompt = plan::whole_instruction(plan.tables(), index);
   view.starts = task.episodes.count;
   view.area = scene.area;
   const plan::TaskRoles roles = plan::roles_of(plan.tables(), task);
@@ -219,7 +220,11 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
   for (const plan::RoleRecord& role : roles.things) {
     const std::string name(plan.text(role.name));
     const std::string thing(plan::thing_in(plan.tables(), task, role));
-    if (name == "source") {
+    if (plan::is_part_distractor(role)) continue;
+    if (role.kind == static_cast<std::uint32_t>(plan::RoleKind::kPartOfSet) &&
+        !view.others.empty() && view.others.back().role == name) {
+      view.others.back().objects.push_back(thing);
+    } else if (name == "source") {
       view.sources = {thing};
     } else if (name == "target") {
       view.targets = {thing};
@@ -228,6 +233,8 @@ Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
     }
   }
   view.distractors = names_of(roles.distractors.first, roles.distractors.count);
+  for (const std::string_view part : plan::part_distractors_of(plan.tables(), task))
+    view.distractors.emplace_back(part);
   add_starts(plan, task, view);
   view.robot = plan.text(robot.name);
   view.base = {scene.base_position[0], scene.base_position[1]};

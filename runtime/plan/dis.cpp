@@ -108,9 +108,10 @@ void list_roles(std::string& out, const Plan& plan, const TaskRecord& task) {
                    label_of_body(plan.tables(), roles, i), plan.text(plan.bodies(task)[i].name));
   }
   for (const RoleRecord& role : roles.things) {
-    const bool is_part = role.kind == static_cast<std::uint32_t>(RoleKind::kPart);
+    const bool is_part = role.kind != static_cast<std::uint32_t>(RoleKind::kRegion);
     fmt::format_to(std::back_inserter(out), "  {} {}: {} {}\n", is_part ? "body" : "region",
-                   role.first, plan.text(role.name), thing_in(plan.tables(), task, role));
+                   role.first, is_part_distractor(role) ? "distractor" : plan.text(role.name),
+                   thing_in(plan.tables(), task, role));
   }
   out += "\n";
 }
@@ -139,6 +140,17 @@ void list_claim_programs(std::string& out, const Plan& plan, std::uint32_t task)
     list_program(out, plan, of, claim.program,
                  fmt::format("claim \"{}\" is body {} of {}", plan.text(claim.text), claim.body,
                              plan.text(of.name)));
+  }
+}
+
+// What brings later sentences, the same way.
+void list_later_programs(std::string& out, const Plan& plan, std::uint32_t task) {
+  for (const LaterRecord& later : plan.later()) {
+    if (task != kNone && later.task != task) continue;
+    const TaskRecord& of = plan.tasks()[later.task];
+    out += "\n";
+    list_program(out, plan, of, later.program,
+                 fmt::format("{} then says \"{}\"", plan.text(of.name), plan.text(later.text)));
   }
 }
 
@@ -270,6 +282,7 @@ std::string disassemble(const Plan& plan, std::uint32_t task) {
   const TaskRecord& record = plan.tasks()[task];
   list_program(out, plan, record, record.program, plan.text(record.name));
   list_claim_programs(out, plan, task);
+  list_later_programs(out, plan, task);
   list_skills(out, plan, task);
   list_question_programs(out, plan, task);
   return out;
@@ -295,6 +308,7 @@ std::string disassemble(const Plan& plan) {
     list_program(out, plan, first, first.program, names);
   }
   list_claim_programs(out, plan, kNone);
+  list_later_programs(out, plan, kNone);
   list_skills(out, plan, kNone);
   list_question_programs(out, plan, kNone);
   return out;

@@ -423,6 +423,8 @@ enum class RoleKind : std::uint32_t {
   kPlaced = 3,  // in no role: what the layout puts into the scene by name
   kPart = 4,    // a part of a fixture: that body of the task
   kRegion = 5,  // `first` is of kRegions
+  kPartOfSet = 6,      // the same of a set: one of several records of its name, which follow one another
+  kPartDistractor = 7,  // in no role: a part that may be taken for another
 };
 
 // What fills a role beside source, target and distractors: bodies [first, first + count) of a task.
@@ -501,6 +503,16 @@ struct ClaimRecord {
   std::uint64_t zero2 = 0;
 };
 static_assert(sizeof(ClaimRecord) == 32);
+
+// What a policy is told in place of the task's instruction, or of the sentence before this one, from the
+// observation behind the first control step after which a condition holds. See later.h.
+struct LaterRecord {
+  std::uint32_t task = kNone;     // kTasks
+  std::uint32_t program = kNone;  // kPrograms: the condition, its one truth, judged from the first step on
+  StringRef text;                 // the sentence
+  std::uint64_t zero[2] = {};
+};
+static_assert(sizeof(LaterRecord) == 32);
 
 enum class Skill : std::uint32_t {
 #define PROBE_SKILL(number, name, word, takes) k##name = number,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/questions.h"
 #include "runtime/plan/roles.h"
 
@@ -44,6 +45,17 @@ Sha256 prompt_id(std::string_view prompt) {
   return tagged("vlaprobe.prompt.1").text(prompt).finish();
 }
 
+Sha256 prompt_id(const Tables& tables, std::uint32_t task) {
+  const std::string_view first = tables.text(tables.tasks[task].prompt);
+  const std::span<const LaterRecord> later = later_of(tables, task);
+  if (later.empty()) return prompt_id(first);
+  Hasher h = tagged("vlaprobe.prompt.2");
+  h.text(first).u32(static_cast<std::uint32_t>(later.size()));
+  for (const LaterRecord& sentence : later)
+    h.text(tables.text(sentence.text)).hash(program_hash(tables, tables.programs[sentence.program]));
+  return h.finish();
+}
+
 Sha256 program_hash(const Tables& tables, const ProgramRecord& program) {
   Hasher h = tagged("vlaprobe.program.1");
   hash_constants(h, slice_of(tables.constants, program.constants));
@@ -67,7 +79,7 @@ Sha256 question_id(const Tables& tables, const QuestionRecord& q) {
   // An end belongs to what was asked of the policy and to who judged it, not to its start alone.
   if (moment_of(family) == QuestionMoment::kEnd) {
     const TaskRecord& task = tables.tasks[q.task];
-    h.hash(prompt_id(tables.text(task.prompt))).hash(to_sha256(task.judge_id));
+    h.hash(prompt_id(tables, q.task)).hash(to_sha256(task.judge_id));
   }
   h.u32(q.truth).u32(q.right).u32(q.a).u32(q.b);
   if (q.program == kNone) {
@@ -412,14 +424,13 @@ std::vector<IdHasher::StartPart> IdHasher::start_parts(const TaskRecord& task,
   return parts;
 }
 
-Sha256 IdHasher::prompt(StringRef text) {
-  if (!prompt_ || prompt_->first.offset != text.offset || prompt_->first.length != text.length)
-    prompt_ = {text, prompt_id(tables_.text(text))};
+Sha256 IdHasher::prompt(std::uint32_t task) {
+  if (!prompt_ || prompt_->first != task) prompt_ = {task, prompt_id(tables_, task)};
   return prompt_->second;
 }
 
 Sha256 IdHasher::episode(const TaskRecord& task, const EpisodeRecord& episode) {
-  return episode_id(to_sha256(episode.start_id), prompt(task.prompt), to_sha256(task.judge_id));
+  return episode_id(to_sha256(episode.start_id), prompt(episode.task), to_sha256(task.judge_id));
 }
 
 }  // namespace probe::plan

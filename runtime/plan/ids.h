@@ -19,6 +19,9 @@ namespace probe::plan {
 Sha256 root_hash(const Header& header, std::span<const DirectoryEntry> directory);
 
 Sha256 prompt_id(std::string_view prompt);
+// Of a task: with its later sentences and what brings them, where it has any. Program hashes are
+// taken from `tables`.
+Sha256 prompt_id(const Tables& tables, std::uint32_t task);
 // Constants, states, code, and each metric's type, readout and name: what is judged and how it is
 // called.
 Sha256 program_hash(const Tables& tables, const ProgramRecord& program);
@@ -75,12 +78,12 @@ class IdHasher {
   Sha256 cameras(const TaskRecord& task);                       // all of them
   Sha256 light(std::uint32_t index);
   Sha256 asset(std::uint32_t index) const;
-  Sha256 prompt(StringRef text);
+  Sha256 prompt(std::uint32_t task);
 
   Tables tables_;
   std::vector<std::optional<Sha256>> programs_, objects_, scenes_, cameras_, lights_;
-  std::optional<std::pair<StringRef, Sha256>>
-      prompt_;  // the last one: that of all of a task's episodes
+  std::optional<std::pair<std::uint32_t, Sha256>>
+      prompt_;  // the last task's: that of all of its episodes
 };
 
 }  // namespace probe::plan

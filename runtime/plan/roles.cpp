@@ -36,7 +36,12 @@ const RoleRecord* role_with(const TaskRoles& roles, std::uint32_t body) {
 
 bool is_of_thing(const RoleRecord& role) {
   return role.kind == static_cast<std::uint32_t>(RoleKind::kPart) ||
-         role.kind == static_cast<std::uint32_t>(RoleKind::kRegion);
+         role.kind == static_cast<std::uint32_t>(RoleKind::kRegion) ||
+         role.kind == static_cast<std::uint32_t>(RoleKind::kPartOfSet) || is_part_distractor(role);
+}
+
+bool is_part_distractor(const RoleRecord& role) {
+  return role.kind == static_cast<std::uint32_t>(RoleKind::kPartDistractor);
 }
 
 std::string_view thing_in(const Tables& tables, const TaskRecord& task, const RoleRecord& role) {
@@ -46,10 +51,26 @@ std::string_view thing_in(const Tables& tables, const TaskRecord& task, const Ro
 }
 
 std::string_view thing_in(const Tables& tables, const TaskRecord& task, std::string_view name) {
+  const std::vector<std::string_view> things = things_in(tables, task, name);
+  return things.empty() ? std::string_view() : things.front();
+}
+
+std::vector<std::string_view> things_in(const Tables& tables, const TaskRecord& task,
+                                        std::string_view name) {
+  std::vector<std::string_view> things;
   for (const RoleRecord& role : roles_of(tables, task).things) {
-    if (tables.text(role.name) == name) return thing_in(tables, task, role);
+    if (tables.text(role.name) == name && !is_part_distractor(role))
+      things.push_back(thing_in(tables, task, role));
   }
-  return {};
+  return things;
+}
+
+std::vector<std::string_view> part_distractors_of(const Tables& tables, const TaskRecord& task) {
+  std::vector<std::string_view> parts;
+  for (const RoleRecord& role : roles_of(tables, task).things) {
+    if (is_part_distractor(role)) parts.push_back(thing_in(tables, task, role));
+  }
+  return parts;
 }
 
 TaskRoles roles_of(const Tables& tables, const TaskRecord& task) {
@@ -109,17 +130,17 @@ std::vector<std::string> axis_names_between(const Tables& tables, std::uint32_t 
         if (is_placed(role) || std::find(known.begin(), known.end(), name) != known.end()) continue;
         known.push_back(name);
         if (objects_in(tables, a, name) != objects_in(tables, b, name) ||
-            thing_in(tables, a, name) != thing_in(tables, b, name))
+            things_in(tables, a, name) != things_in(tables, b, name))
           names.push_back("object." + std::string(name));
       }
       for (const RoleRecord& role : roles_of(tables, *task).things) {
         const std::string_view name = tables.text(role.name);
-        if (name == "source" || name == "target" ||
+        if (is_part_distractor(role) || name == "source" || name == "target" ||
             std::find(known.begin(), known.end(), name) != known.end())
           continue;
         known.push_back(name);
         if (!objects_in(tables, a, name).empty() || !objects_in(tables, b, name).empty() ||
-            thing_in(tables, a, name) != thing_in(tables, b, name))
+            things_in(tables, a, name) != things_in(tables, b, name))
           names.push_back("object." + std::string(name));
       }
     }

@@ -16,7 +16,9 @@ namespace probe::plan {
 struct TaskRoles {
   std::uint32_t source = kNone, target = kNone;  // a body, or none
   std::span<const RoleRecord> others;  // declared roles and, last, what the layout placed by name
-  std::span<const RoleRecord> things;  // roles, `source` and `target`, too, of parts and regions
+  // Roles, `source` and `target`, too, of parts and regions; a record for each part of a set, and,
+  // without a name, for each that is a distractor.
+  std::span<const RoleRecord> things;
   Slice distractors;
   std::uint32_t objects = 0;
 
@@ -29,8 +31,9 @@ struct TaskRoles {
   bool has_both() const { return has_source() && has_target(); }
 };
 
-// Filled with a part or a region of a fixture.
+// Filled with a part or a region of a fixture, or a part that is a distractor.
 bool is_of_thing(const RoleRecord& role);
+bool is_part_distractor(const RoleRecord& role);
 
 // The references of the task are verified, or are those of a writer.
 TaskRoles roles_of(const Tables& tables, const TaskRecord& task);
@@ -44,8 +47,13 @@ std::string label_of_body(const Tables& tables, const TaskRoles& roles, std::uin
 
 // The part or region that fills a role: "cabinet.inside_top". One of the task's `things`.
 std::string_view thing_in(const Tables& tables, const TaskRecord& task, const RoleRecord& role);
-// The same by the role's name; empty where an object fills it or nothing.
+// The same by the role's name, the first of a set; empty where an object fills it or nothing.
 std::string_view thing_in(const Tables& tables, const TaskRecord& task, std::string_view role);
+// All of a role, of a set in their order; empty where none fills it.
+std::vector<std::string_view> things_in(const Tables& tables, const TaskRecord& task,
+                                        std::string_view role);
+// The parts that are distractors, in their order.
+std::vector<std::string_view> part_distractors_of(const Tables& tables, const TaskRecord& task);
 
 // The declared role of that name; null where the task has none.
 const RoleRecord* find_role(const Tables& tables, const TaskRoles& roles, std::string_view name);

@@ -278,6 +278,9 @@ Status verify_code(std::span<const std::byte> bytes, const Tables& tables) {
   for (const ClaimRecord& claim : tables.claims) {
     PROBE_TRY(check_task(place, tables, tables.tasks[claim.task], needs[claim.program]));
   }
+  for (const LaterRecord& later : tables.later) {
+    PROBE_TRY(check_task(place, tables, tables.tasks[later.task], needs[later.program]));
+  }
   for (const QuestionRecord& question : tables.questions) {
     if (question.program == kNone) continue;
     PROBE_TRY(check_task(place, tables, tables.tasks[question.task], needs[question.program]));

@@ -172,6 +172,7 @@ Status verify_tables(std::span<const std::byte> bytes, const Tables& tables) {
   PROBE_TRY(verify_relations(bytes, tables));
   PROBE_TRY(verify_skills(bytes, tables));
   PROBE_TRY(verify_claims(bytes, tables));
+  PROBE_TRY(verify_later(bytes, tables));
   return verify_questions(bytes, tables);
 }
 

@@ -62,6 +62,7 @@ class RecordCheck : FieldCheck {
   Status check(const RoleRecord& role) const;
   Status check(const TaskRecord& task) const;
   Status check(const ClaimRecord& claim) const;
+  Status check(const LaterRecord& later) const;
   Status check(const SkillRecord& skill) const;
   Status check(const EpisodeRecord& episode) const;
   Status check(const SetRecord& set) const;
@@ -99,6 +100,9 @@ Status verify_skills(std::span<const std::byte> bytes, const Tables& tables);
 
 // What claims say of their tasks and programs; after verify_relations.
 Status verify_claims(std::span<const std::byte> bytes, const Tables& tables);
+
+// What later sentences say of their tasks and programs; after verify_relations.
+Status verify_later(std::span<const std::byte> bytes, const Tables& tables);
 
 // What records say of one another; after RecordCheck.
 Status verify_relations(std::span<const std::byte> bytes, const Tables& tables);

@@ -110,9 +110,14 @@ class RelationCheck : FieldCheck {
     std::uint64_t next = (k.source == kNone ? 0 : 1) + (k.target == kNone ? 0 : 1);
     bool is_last = false;
     std::vector<std::string_view> names;
-    bool is_thing = false;
+    bool is_thing = false, is_set = false;
     for (const RoleRecord& role : slice_of(t.roles, k.roles)) {
-      names.push_back(t.text(role.name));
+      const std::string_view name = t.text(role.name);
+      // Parts of a set follow one another under its name; distractors have none.
+      const bool goes_on = role.kind == static_cast<std::uint32_t>(RoleKind::kPartOfSet) &&
+                           is_set && !names.empty() && names.back() == name;
+      is_set = role.kind == static_cast<std::uint32_t>(RoleKind::kPartOfSet);
+      if (!goes_on && !is_part_distractor(role)) names.push_back(name);
       if (is_of_thing(role)) {
         is_thing = true;
         continue;
@@ -210,10 +215,16 @@ class RelationCheck : FieldCheck {
     const auto is_part = [&](const BodyRecord& body) {
       return body.kind == static_cast<std::uint32_t>(BodyKind::kPart);
     };
+    std::unordered_set<std::uint32_t> listed;  // parts of sets and distractors
     for (const RoleRecord& role : roles_of(t, k).things) {
       bool is_there = false;
-      if (role.kind == static_cast<std::uint32_t>(RoleKind::kPart)) {
+      if (role.kind != static_cast<std::uint32_t>(RoleKind::kRegion)) {
         is_there = role.first < bodies.size() && is_part(bodies[role.first]);
+        if (role.kind != static_cast<std::uint32_t>(RoleKind::kPart) &&
+            !listed.insert(role.first).second)
+          return fail(Rule::kRoleThing, &k.roles,
+                      fmt::format("body {} of task `{}` is listed twice", role.first,
+                                  t.text(k.name)));
       } else if (role.first < t.regions.size()) {
         const RegionRecord& region = t.regions[role.first];
         is_there = region.kind == static_cast<std::uint32_t>(BodyKind::kPart) &&

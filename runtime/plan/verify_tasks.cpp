@@ -84,14 +84,17 @@ Status RecordCheck::check(const PlacementRecord& p) const {
 
 Status RecordCheck::check(const RoleRecord& r) const {
   if (r.kind < static_cast<std::uint32_t>(RoleKind::kOne) ||
-      r.kind > static_cast<std::uint32_t>(RoleKind::kRegion))
+      r.kind > static_cast<std::uint32_t>(RoleKind::kPartDistractor))
     return fail(Rule::kRoleKind, &r.kind, fmt::format("role kind {} is not known", r.kind));
-  const bool is_placed = r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced);
+  const bool is_none =
+      r.kind == static_cast<std::uint32_t>(RoleKind::kPlaced) || is_part_distractor(r);
   PROBE_TRY(check_text(r.name));
-  if (!is_placed) PROBE_TRY(check_word(r.name, "the name of a role"));
-  const std::string_view name = is_placed ? "" : t.text(r.name);
+  if (!is_none) PROBE_TRY(check_word(r.name, "the name of a role"));
+  const std::string_view name = is_none ? "" : t.text(r.name);
   const bool is_end = name == "source" || name == "target";
-  if ((is_placed && r.name.length != 0) || (is_end && !is_of_thing(r)) || name == "distractors" ||
+  const bool is_one_thing = r.kind == static_cast<std::uint32_t>(RoleKind::kPart) ||
+                            r.kind == static_cast<std::uint32_t>(RoleKind::kRegion);
+  if ((is_none && r.name.length != 0) || (is_end && !is_one_thing) || name == "distractors" ||
       name == "distractor")
     return fail(Rule::kRoleName, &r.name,
                 "a role has a name of its own, and what a layout places has none");
@@ -149,6 +152,13 @@ Status RecordCheck::check(const ClaimRecord& c) const {
   PROBE_TRY(check_zero(c.zero));
   PROBE_TRY(check_name(c.text, "the words of a claim"));
   return check_zero({&c.zero2, 1});
+}
+
+Status RecordCheck::check(const LaterRecord& l) const {
+  PROBE_TRY(check_index(l.task, t.tasks.size(), "TASK"));
+  PROBE_TRY(check_index(l.program, t.programs.size(), "PROG"));
+  PROBE_TRY(check_text(l.text));  // a control may say nothing more
+  return check_zero(l.zero);
 }
 
 Status RecordCheck::check(const EpisodeRecord& e) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/moves.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/vm/claims.h"
@@ -66,9 +67,10 @@ Status check_measures(const plan::Plan& plan, std::uint32_t task, const store::T
     return refuse(
         fmt::format("it was measured at {} Hz, the plan judges at {} Hz", header.control_hz, hz));
   }
-  if (plan.text(record.prompt) != header.prompt) {
-    return refuse(fmt::format("the policy was told \"{}\", task `{}` says \"{}\"", header.prompt,
-                              plan.text(record.name), plan.text(record.prompt)));
+  const std::string told = plan::whole_instruction(header.prompt, header.later);
+  if (const std::string says = plan::whole_instruction(plan.tables(), task); says != told) {
+    return refuse(fmt::format("the policy was told \"{}\", task `{}` says \"{}\"", told,
+                              plan.text(record.name), says));
   }
   const bool is_invalid = trace.end && trace.end->invalid;
   if (trace.steps.size() < record.horizon && !is_invalid && !ends_within(plan, task, trace)) {

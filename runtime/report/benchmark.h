@@ -45,6 +45,7 @@ struct StartPlace {
 // are told apart by content.
 struct Task {
   std::string name, prompt, scene;
+  std::vector<std::string> later;  // sentences behind the prompt, where it changes
   int plan = 0;
   int baseline = kAbsent;
   std::uint32_t axes = 0;  // mask of plan::Axis, against the baseline

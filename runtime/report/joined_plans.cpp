@@ -9,6 +9,7 @@
 
 #include "runtime/inspect/axes.h"
 #include "runtime/plan/ids.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/places.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/source_line.h"
@@ -116,7 +117,7 @@ void JoinedPlans::add_tasks(int index) {
 void JoinedPlans::add_task(const plan::Plan& plan, int index, std::uint32_t t, PlanTasks& map) {
   const plan::TaskRecord& record = plan.tasks()[t];
   const std::string name(plan.text(record.name));
-  const auto key = std::tuple(name, std::string(plan.text(record.prompt)), hex(record.judge_id),
+  const auto key = std::tuple(name, plan::whole_instruction(plan.tables(), t), hex(record.judge_id),
                               object_name(plan, record.source), object_name(plan, record.target));
   const auto [known, fresh] = by_content_.try_emplace(key, benchmark_.tasks.size());
   map.task[t] = static_cast<int>(known->second);
@@ -157,6 +158,8 @@ Task JoinedPlans::describe(const plan::Plan& plan, int index, std::uint32_t t) {
     break;
   }
   task.prompt = plan.text(record.prompt);
+  for (const plan::LaterRecord& later : plan::later_of(plan.tables(), t))
+    task.later.emplace_back(plan.text(later.text));
   index_in(benchmark_.prompts, task.prompt);
   task.plan = index;
   task.axes = record.axes;

@@ -83,6 +83,7 @@ Json tasks_json(const Benchmark& benchmark) {
         {"scene", task.scene},     {"metrics", task.metrics},     {"starts", starts_json(task)}};
     for (const Task::NamedRole& role : task.roles)
       json["roles"].push_back({{"name", role.name}, {"objects", role.objects}});
+    if (!task.later.empty()) json["then"] = task.later;
     if (!task.confounded.empty()) json["confounded"] = task.confounded;
     if (!task.allowed.empty()) {
       json["allowed"] = Json::array();

@@ -8,6 +8,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/hash_number.h"
 #include "runtime/base/percent.h"
+#include "runtime/plan/later.h"
 #include "runtime/store/not_attempted.h"
 #include "runtime/vm/claims.h"
 
@@ -47,9 +48,9 @@ class Loop {
         policy_(policy),
         trace_(trace),
         frames_(frames),
-        row_(row),
-        prompt_(plan.text(task_.prompt)) {
-    prompt_hash_ = sha256(prompt_);
+        row_(row) {
+    for (std::size_t i = 0; i < stage.told().count(); ++i)
+      prompt_hashes_.push_back(sha256(stage.told().text(i)));
     for (std::size_t i = 0; i < stage.judge().metric_count(); ++i) {
       const auto metric = static_cast<std::uint32_t>(i);
       row_.metrics.push_back({stage.judge().metric_name(metric),
@@ -119,7 +120,7 @@ class Loop {
     const auto observation = stage_.observe();
     if (!observation) return {reason("picture", observation.failure()), {}};
     record.image_hash = picture_hash(stage_.frames());
-    record.prompt_hash = prompt_hash_;
+    record.prompt_hash = prompt_hashes_[stage_.told().sentence()];
     record.render_s = seconds_since(clock);
     if (number == 0) row_.image_sha256 = to_hex(record.image_hash);
     if (frames_ != nullptr) {
@@ -190,8 +191,7 @@ class Loop {
   show::FrameSink* frames_;
   store::ResultRow& row_;
   bool policy_begun_ = false;
-  std::string_view prompt_;
-  Sha256 prompt_hash_;
+  std::vector<Sha256> prompt_hashes_;  // by sentence of the instruction
   Hasher frames_hash_;
   policy::LiveFigures live_;
 };
@@ -252,6 +252,8 @@ store::TraceHeader make_trace_header(const plan::Plan& plan, const EpisodeJob& j
   header.seed = job.seed;
   header.policy = policy;
   header.prompt = std::string(plan.text(task.prompt));
+  for (const plan::LaterRecord& later : plan::later_of(plan.tables(), job.task))
+    header.later.emplace_back(plan.text(later.text));
   header.horizon = task.horizon;
   header.control_hz = robot.control_hz;
   header.bodies = stage.body_names();

@@ -7,6 +7,7 @@
 
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
+#include "runtime/plan/roles.h"
 #include "runtime/run/callers_proof.h"
 #include "runtime/run/changed_folder.h"
 #include "runtime/run/delivery.h"
@@ -56,7 +57,8 @@ void note_idle_tasks(const plan::Plan& plan, const Selection& selection, const s
                      RunSummary& summary) {
   const std::vector<std::uint32_t> tasks = tasks_of(selection.jobs);
   const auto idle = std::count_if(tasks.begin(), tasks.end(), [&](std::uint32_t task) {
-    return plan.tasks()[task].distractors == 0;
+    return plan.tasks()[task].distractors == 0 &&
+           plan::part_distractors_of(plan.tables(), plan.tasks()[task]).empty();
   });
   if (idle == 0) return;
   summary.notes.push_back("policy `" + policy + "` goes for a distractor and stays still in the " +

@@ -121,6 +121,8 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
 }
 
 Result<policy::Action> ServerPolicy::act(const policy::Observation& observation) {
+  // What was answered to another instruction is not done under this one.
+  if (observation.prompt != instruction_) queue_.clear();
   if (queue_.wants_answer()) {
     if (auto asked = ask_and_wait(observation); !asked) {
       note_unasked(asked.failure());
@@ -278,6 +280,7 @@ Status ServerPolicy::check_identity() {
 Result<Request> ServerPolicy::next_request(const policy::Observation& observation) {
   if (!in_episode_) return Failure{Fault::kPolicy, "the connection was lost in this episode", ""};
   PROBE_ASSIGN(Request request, to_request(profile_, observation));
+  instruction_ = observation.prompt;
   if (!delivery_) delivery_ = delivery_of(request);
   return request;
 }

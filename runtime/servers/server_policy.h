@@ -81,6 +81,7 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   policy::QueryMeter* queries_;
   std::shared_ptr<Identity> identity_;
   ChunkQueue queue_;
+  std::string instruction_;  // of the last question
   std::optional<policy::Delivery> delivery_;
   std::optional<robot::Chain> arm_;  // of the episode's robot, where actions name its joints
   robot::ActionSpace space_;         // of the episode's robot

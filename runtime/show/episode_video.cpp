@@ -3,13 +3,14 @@
 
 #include <cmath>
 
+#include "runtime/plan/later.h"
 #include "runtime/show/picture_grid.h"
 
 namespace probe::show {
 
 EpisodeVideo::EpisodeVideo(const store::TraceHeader& header, std::string path, std::string camera)
     : file_(std::move(path)),
-      instruction_(header.prompt),
+      instruction_(plan::whole_instruction(header.prompt, header.later)),
       caption_(header.task + "  episode " + std::to_string(header.episode) + "  seed " +
                std::to_string(header.seed) + "  " + header.policy),
       camera_(std::move(camera)),

@@ -24,6 +24,7 @@ Status Stage::reset(std::uint32_t index) {
   PROBE_TRY(world_->reset(index));
   past_.clear();
   remember();
+  PROBE_TRY(told_.begin(world_->starts()));
   return judge_.begin(world_->starts());
 }
 
@@ -45,7 +46,7 @@ Result<policy::Observation> Stage::observe() {
     seen.image = images_.front().image;
   }
   seen.cameras = images_;
-  seen.prompt = plan_.text(task.prompt);
+  seen.prompt = told_.text();
   seen.proprioception = world_->proprioception();
   seen.privileged = &world_->privileged();
   seen.step = world_->steps();
@@ -56,6 +57,7 @@ Result<policy::Observation> Stage::observe() {
 Status Stage::step(const policy::Action& action) {
   PROBE_TRY(world_->act(action));
   remember();
+  PROBE_TRY(told_.step(world_->sample()));
   return judge_.step(world_->sample());
 }
 
@@ -86,6 +88,7 @@ StageState Stage::save() const {
           Sha256{episode.episode_id},
           world_->save(),
           judge_.save(),
+          told_.count() > 1 ? std::optional(told_.save()) : std::nullopt,
           {past_.begin(), past_.end()}};
 }
 
@@ -107,6 +110,7 @@ Status Stage::restore(const StageState& state) {
   }
   past_.assign(state.past.begin(), state.past.end());
   if (past_.empty()) remember();
+  PROBE_TRY(told_.restore(world_->starts(), state.told.value_or(vm::ToldState{})));
   return judge_.restore(world_->starts(), state.judge);
 }
 
@@ -114,7 +118,7 @@ policy::EpisodeStart Stage::introduction() const {
   const plan::TaskRecord& task = plan_.tasks()[task_];
   policy::EpisodeStart start;
   start.task = plan_.text(task.name);
-  start.prompt = plan_.text(task.prompt);
+  start.prompt = told_.text();
   start.index = static_cast<int>(start_);
   start.horizon = static_cast<int>(task.horizon);
   start.delay = static_cast<int>(task.delay);

@@ -21,6 +21,7 @@
 #include "runtime/stage/scene_view.h"
 #include "runtime/stage/stage_state.h"
 #include "runtime/vm/judge.h"
+#include "runtime/vm/told.h"
 
 namespace probe::stage {
 
@@ -76,6 +77,8 @@ class Stage {
   const vm::StepSample& sample() const { return world_->sample(); }
   std::span<const vm::BodyStart> body_starts() const { return world_->starts(); }
   const vm::Judge& judge() const { return judge_; }
+  // Which sentence of the instruction the next observation says.
+  const vm::Told& told() const { return told_; }
   const policy::Privileged& privileged() const { return world_->privileged(); }
   // What observe() says of the robot, without the pictures.
   policy::Proprioception proprioception() const { return world_->proprioception(); }
@@ -95,7 +98,7 @@ class Stage {
 
  private:
   Stage(const plan::Plan& plan, std::uint32_t task)
-      : plan_(plan), task_(task), judge_(plan, task) {}
+      : plan_(plan), task_(task), judge_(plan, task), told_(plan, task) {}
 
   const plan::Plan& plan_;
   std::uint32_t task_;
@@ -103,6 +106,7 @@ class Stage {
   std::unique_ptr<EpisodeWorld> world_;
   std::unique_ptr<SceneView> view_;
   vm::Judge judge_;
+  vm::Told told_;
   std::span<const CameraFrame> frames_;
   std::vector<policy::CameraImage> images_;  // of the last observation
 

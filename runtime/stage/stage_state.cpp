@@ -13,7 +13,7 @@ namespace probe::stage {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'S', 'T', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr std::uint32_t kVersion = 1, kLateVersion = 2, kCountedVersion = 3;
+constexpr std::uint32_t kVersion = 1, kLateVersion = 2, kCountedVersion = 3, kToldVersion = 4;
 constexpr std::size_t kCheckBytes = 8;
 // Two objects of 256 parts of which each touches each of the other's would save 54 MB.
 constexpr std::size_t kMostBytes = std::size_t{256} << 20;
@@ -40,7 +40,7 @@ robot::ControlState get_control(ByteReader& from) {
 
 // Whether an action on its way has other numbers than a tool's: it says how many, then.
 bool has_counted(const StageState& state) {
-  return std::ranges::any_of(state.world.waiting, [](const policy::Action& action) {
+  return state.told || std::ranges::any_of(state.world.waiting, [](const policy::Action& action) {
     return action.size() != robot::kActionSize;
   });
 }
@@ -89,6 +89,42 @@ bool get_late(ByteReader& from, bool is_counted, StageState& state) {
   return true;
 }
 
+void put_judge(ByteWriter& to, const vm::JudgeState& judge) {
+  to.u32(static_cast<std::uint32_t>(judge.monitors.size()));
+  for (const vm::JudgeState::Monitor& monitor : judge.monitors) {
+    to.f64(monitor.value);
+    to.u8(monitor.started ? 1 : 0);
+  }
+  to.reals(judge.values);
+  to.u8(judge.decided ? 1 : 0);
+}
+
+vm::JudgeState get_judge(ByteReader& from) {
+  vm::JudgeState judge;
+  judge.monitors.resize(from.count(from.u32(), kMonitorBytes));
+  for (vm::JudgeState::Monitor& monitor : judge.monitors) {
+    monitor.value = from.f64();
+    monitor.started = from.u8() != 0;
+  }
+  judge.values = from.reals();
+  judge.decided = from.u8() != 0;
+  return judge;
+}
+
+void put_told(ByteWriter& to, const vm::ToldState& told) {
+  to.u32(told.sentence);
+  to.u32(static_cast<std::uint32_t>(told.conditions.size()));
+  for (const vm::JudgeState& condition : told.conditions) put_judge(to, condition);
+}
+
+vm::ToldState get_told(ByteReader& from) {
+  vm::ToldState told{from.u32(), {}};
+  constexpr std::size_t kLeast = 2 * sizeof(std::uint32_t) + 1;
+  told.conditions.resize(from.count(from.u32(), kLeast));
+  for (vm::JudgeState& condition : told.conditions) condition = get_judge(from);
+  return told;
+}
+
 std::span<const std::byte> check_of(const Sha256& hash) {
   return std::as_bytes(std::span(hash.bytes)).first(kCheckBytes);
 }
@@ -98,8 +134,9 @@ std::span<const std::byte> check_of(const Sha256& hash) {
 std::vector<std::byte> StageState::to_bytes() const {
   ByteWriter to;
   for (const std::uint8_t byte : kMagic) to.u8(byte);
-  const bool is_late = !world.waiting.empty() || !past.empty();
-  to.u32(has_counted(*this) ? kCountedVersion : is_late ? kLateVersion : kVersion);
+  const bool is_late = told || !world.waiting.empty() || !past.empty();
+  to.u32(told                 ? kToldVersion
+         : has_counted(*this) ? kCountedVersion : is_late ? kLateVersion : kVersion);
   to.u32(start);
   to.hash(episode_id);
   to.u32(static_cast<std::uint32_t>(world.steps));
@@ -111,14 +148,9 @@ std::vector<std::byte> StageState::to_bytes() const {
     to.vec(body.opening);
   }
   to.text({reinterpret_cast<const char*>(world.physics.data()), world.physics.size()});
-  to.u32(static_cast<std::uint32_t>(judge.monitors.size()));
-  for (const vm::JudgeState::Monitor& monitor : judge.monitors) {
-    to.f64(monitor.value);
-    to.u8(monitor.started ? 1 : 0);
-  }
-  to.reals(judge.values);
-  to.u8(judge.decided ? 1 : 0);
+  put_judge(to, judge);
   if (is_late) put_late(to, *this);
+  if (told) put_told(to, *told);
   std::vector<std::byte> bytes = to.bytes();
   const Sha256 hash = sha256(std::span<const std::byte>(bytes));
   const auto check = check_of(hash);
@@ -138,11 +170,11 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   ByteReader from(bytes.first(bytes.size() - kCheckBytes));
   from.take(kMagic.size());
   const std::uint32_t version = from.u32();
-  const bool is_counted = version == kCountedVersion,
+  const bool is_counted = version == kCountedVersion || version == kToldVersion,
              is_late = version == kLateVersion || is_counted;
   if (version != kVersion && !is_late) {
     return refuse(fmt::format("a saved stage of format {}, this program reads {} to {}", version,
-                              kVersion, kCountedVersion));
+                              kVersion, kToldVersion));
   }
   const Sha256 hash = sha256(bytes.first(bytes.size() - kCheckBytes));
   if (!std::ranges::equal(bytes.last(kCheckBytes), check_of(hash))) {
@@ -163,14 +195,9 @@ Result<StageState> StageState::from_bytes(std::span<const std::byte> bytes) {
   }
   const auto physics = from.take(from.u32());
   state.world.physics.assign(physics.begin(), physics.end());
-  state.judge.monitors.resize(from.count(from.u32(), kMonitorBytes));
-  for (vm::JudgeState::Monitor& monitor : state.judge.monitors) {
-    monitor.value = from.f64();
-    monitor.started = from.u8() != 0;
-  }
-  state.judge.values = from.reals();
-  state.judge.decided = from.u8() != 0;
+  state.judge = get_judge(from);
   const bool is_read = !is_late || get_late(from, is_counted, state);
+  if (is_read && version == kToldVersion) state.told = get_told(from);
   if (!is_read || !from.ok() || from.left() != 0 || steps > kMostSteps) {
     return refuse("the saved stage has another form than its version");
   }

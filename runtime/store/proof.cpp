@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/later.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof_book.h"
 #include "runtime/store/run_plan.h"
@@ -14,6 +15,7 @@
 #include "runtime/store/stored_trace.h"
 #include "runtime/vm/claims.h"
 #include "runtime/vm/judge.h"
+#include "runtime/vm/told.h"
 
 namespace probe::store {
 namespace {
@@ -27,9 +29,14 @@ bool is_judged_so(const plan::Plan& plan, std::uint32_t task, const Trace& trace
   if (!trace.end->invalid &&
       !vm::check_claims(plan, task, trace.start->starts, trace.start->sample))
     return false;
-  for (const TraceStep& step : trace.steps) {
+  vm::Told told(plan, task);
+  const auto said = sentences_said(trace);
+  if (!said || !told.begin(trace.start->starts)) return false;
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    const TraceStep& step = trace.steps[i];
     if (judge.ended()) return false;  // nothing comes behind the end
-    if (!judge.step(step.sample)) return false;
+    if (told.sentence() != (*said)[i]) return false;
+    if (!judge.step(step.sample) || !told.step(step.sample)) return false;
     if (!std::ranges::equal(judge.values(), step.metrics)) return false;
   }
   // An episode that ended early says nothing of its metrics; one that did not, what it was last.
@@ -76,7 +83,8 @@ void add_times(const plan::TaskRecord& task, ResultRow& row) {
 // As add_task(), of a trace that was read before.
 bool add_known(const plan::Plan& plan, const std::vector<double>& joints, ResultRow& row) {
   const auto index = plan.find_task(row.task);
-  if (!index) return false;
+  // When an instruction changed stands in the trace alone.
+  if (!index || !plan::later_of(plan.tables(), *index).empty()) return false;
   const plan::TaskRecord& task = plan.tasks()[*index];
   const auto names = plan::joint_names_of(plan.tables(), plan.scenes()[task.scene]);
   if (!joints.empty() && joints.size() != names.size()) return false;
@@ -94,6 +102,10 @@ std::string terms_of(const Trace& trace) {
 void add_task(const plan::Plan& plan, const Trace& trace, ResultRow& row) {
   const plan::TaskRecord& task = plan.tasks()[*plan.find_task(row.task)];
   add_times(task, row);
+  if (!trace.header.later.empty()) {
+    row.told_at = turns_of(trace);
+    for (int& step : *row.told_at) ++step;
+  }
   if (row.invalid || trace.steps.empty()) return;
   const std::size_t robots = plan.robots()[plan.scenes()[task.scene].robot].drives.count;
   for (std::size_t j = robots; j < trace.header.joints.size(); ++j)

@@ -53,12 +53,19 @@ struct RareField {
   std::string (*cell)(const ResultRow& row);  // empty: nothing to say
 };
 std::string steps_cell(int steps) { return steps == 0 ? "" : std::to_string(steps); }
+std::string list_cell(const std::optional<std::vector<int>>& numbers) {
+  std::string text;
+  for (const int number : numbers.value_or(std::vector<int>()))
+    text += (text.empty() ? "" : " ") + std::to_string(number);
+  return text;
+}
 constexpr RareField kRareFields[] = {
     {"live", [](const ResultRow& row) { return row.live; }},
     {"only_success", [](const ResultRow& row) { return std::string(row.only_success ? "true" : ""); }},
     {"remark", [](const ResultRow& row) { return row.remark.value_or(""); }},
     {"idle", [](const ResultRow& row) { return steps_cell(row.idle); }},
     {"delay", [](const ResultRow& row) { return steps_cell(row.delay); }},
+    {"told_at", [](const ResultRow& row) { return list_cell(row.told_at); }},
 };
 constexpr std::string_view kJoints = "joints", kJointPrefix = "joint.";
 
@@ -127,6 +134,7 @@ std::string RowTexts::json(const ResultRow& row) {
   if (row.remark) json["remark"] = *row.remark;
   if (row.idle != 0) json["idle"] = row.idle;
   if (row.delay != 0) json["delay"] = row.delay;
+  if (row.told_at) json["told_at"] = *row.told_at;
   for (const JointValue& joint : row.joints)
     json[std::string(kJoints)][joint.name] = joint.position;
   // An array of one, whose lines are those of a longer one. A policy's error text may hold any

@@ -49,6 +49,9 @@ struct ResultRow {
   int idle = 0, delay = 0;
   // Of read_proven_results: where the joints of the scene's fixtures were at the end, m or rad.
   std::vector<JointValue> joints = {};
+  // Of read_proven_results, of a task whose instruction changes: the steps, from 1, in which each
+  // later sentence was said first; as many as came.
+  std::optional<std::vector<int>> told_at = {};
   // RunIdentity::live of its run; empty in one whose world waits. Of read_results.
   std::string live = {};
   // RunIdentity::only_success of its run. Of read_results.
@@ -70,7 +73,7 @@ Result<std::size_t> count_rows(const std::string& dir);
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
 // Behind `trace` stand, where there is something to say, `live`, `only_success` (true where the run
 // stored no other episodes), `remark`, `idle` and `delay`
-// (control steps) and `joints`, an object.
+// (control steps), `told_at` (steps, from 1, in which the instruction changed) and `joints`, an object.
 std::string results_to_json(std::span<const ResultRow> rows);
 // The same as comma-separated values with a header line; truths as true/false. What some rows have
 // to say has a column, and each joint one: `joint.cabinet.top`.

@@ -75,6 +75,11 @@ class FileTraceWriter final : public TraceWriter {
       codec::put_actions(actions, *header.joint_actions);
       PROBE_TRY(chunk(Tag::kActions, actions.bytes()));
     }
+    if (!header.later.empty()) {
+      ByteWriter later;
+      codec::put_later(later, header.later);
+      PROBE_TRY(chunk(Tag::kLater, later.bytes()));
+    }
     if (is_live_) {
       ByteWriter terms;
       codec::put_terms(terms, *header.live);
@@ -299,7 +304,8 @@ std::string accept(Trace& trace, bool is_live, bool is_of_joints, bool& has_head
   if (trace.end && tag != Tag::kHash) return "a chunk after the end";
   if (has_header && is_of_joints && !trace.header.joint_actions && tag != Tag::kActions)
     return "no count of an action's numbers";
-  if (has_header && is_live && !trace.header.live && tag != Tag::kLive && tag != Tag::kActions)
+  if (has_header && is_live && !trace.header.live && tag != Tag::kLive && tag != Tag::kLater &&
+      tag != Tag::kActions)
     return "no terms of a live episode";
   ByteReader from(payload);
   switch (tag) {
@@ -318,6 +324,14 @@ std::string accept(Trace& trace, bool is_live, bool is_of_joints, bool& has_head
           trace.header.joint_actions->count > trace.header.joints.size() + 1)
         return "more numbers of an action than its header has joints";
       return trace.header.joint_actions ? "" : "a count of an action's numbers of another form";
+    case Tag::kLater: {
+      if (trace.start || trace.header.live || !trace.header.later.empty())
+        return "later sentences where none belong";
+      auto later = codec::get_later(payload);
+      if (!later) return "later sentences of another form";
+      trace.header.later = std::move(*later);
+      return {};
+    }
     case Tag::kLive:
       if (!is_live || trace.header.live) return "terms of a live episode where none belong";
       trace.header.live = codec::get_terms(payload);
@@ -372,6 +386,29 @@ std::string accept(Trace& trace, bool is_live, bool is_of_joints, bool& has_head
 }
 
 }  // namespace
+
+std::optional<std::vector<std::uint32_t>> sentences_said(const Trace& trace) {
+  std::vector<Sha256> hashes = {sha256(trace.header.prompt)};
+  for (const std::string& later : trace.header.later) hashes.push_back(sha256(later));
+  std::vector<std::uint32_t> said;
+  std::uint32_t now = 0;
+  for (const TraceStep& step : trace.steps) {
+    // Those in turn differ, so a step says which it is.
+    if (step.prompt_hash != hashes[now] && !said.empty() && now + 1 < hashes.size()) ++now;
+    if (step.prompt_hash != hashes[now]) return std::nullopt;
+    said.push_back(now);
+  }
+  return said;
+}
+
+std::vector<int> turns_of(const Trace& trace) {
+  std::vector<int> turns;
+  const auto said = sentences_said(trace);
+  for (std::size_t i = 1; said && i < said->size(); ++i) {
+    if ((*said)[i] != (*said)[i - 1]) turns.push_back(static_cast<int>(i));
+  }
+  return turns;
+}
 
 Result<std::unique_ptr<TraceWriter>> TraceWriter::create(const std::string& path,
                                                          const TraceHeader& header) {

@@ -25,6 +25,7 @@ struct TraceHeader {
   std::int32_t episode = 0, seed = 0;
   std::string policy;
   std::string prompt;
+  std::vector<std::string> later;  // sentences behind it, of a task whose instruction changes
   std::uint32_t horizon = 0;
   double control_hz = 0;
   std::vector<std::string> bodies;  // task-local, in the plan's order, then links of fixtures
@@ -101,6 +102,12 @@ struct Trace {
   Sha256 hash;             // of what was read; equal to the recorded one if complete
   std::string incomplete;  // why the reader stopped early; empty for a whole trace
 };
+
+// Which sentence of the instruction was said in each step, 0 being the first; read off the prompt
+// hashes. Nothing where they are not the header's sentences in their order.
+std::optional<std::vector<std::uint32_t>> sentences_said(const Trace& trace);
+// The steps, from 0, in which each later sentence was said first; as many as came.
+std::vector<int> turns_of(const Trace& trace);
 
 // The whole trace; fails (kTrace) on a truncated or damaged one, saying where and after which
 // step.

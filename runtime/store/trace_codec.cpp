@@ -136,6 +136,15 @@ std::optional<TraceHeader::JointActions> get_actions(std::span<const std::byte> 
   return whole(from, std::move(actions));
 }
 
+void put_later(ByteWriter& to, const std::vector<std::string>& later) { put_texts(to, later); }
+
+std::optional<std::vector<std::string>> get_later(std::span<const std::byte> bytes) {
+  ByteReader from(bytes);
+  std::vector<std::string> later = get_texts(from);
+  if (later.empty()) return std::nullopt;
+  return whole(from, std::move(later));
+}
+
 void put_terms(ByteWriter& to, const policy::LiveTerms& terms) {
   to.u8(terms.delay_s ? 1 : 0);
   to.f64(terms.delay_s.value_or(0));

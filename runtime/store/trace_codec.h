@@ -22,6 +22,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'T', 'R', 'C', '\r'
 enum class Tag : std::uint32_t {
   kHead = 0x44414548,         // HEAD
   kActions = 0x4e544341,      // ACTN, of versions 3 and 4
+  kLater = 0x4e454854,        // THEN, of a task whose instruction changes
   kLive = 0x4556494c,         // LIVE, of versions 2 and 4
   kFingerprint = 0x474e4946,  // FING, not hashed
   kSettled = 0x4c544553,      // SETL
@@ -33,12 +34,13 @@ enum class Tag : std::uint32_t {
 };
 
 inline bool is_hashed(Tag tag) {
-  return tag == Tag::kHead || tag == Tag::kActions || tag == Tag::kLive || tag == Tag::kSettled ||
-         tag == Tag::kOwn || tag == Tag::kStep || tag == Tag::kDone;
+  return tag == Tag::kHead || tag == Tag::kActions || tag == Tag::kLater || tag == Tag::kLive ||
+         tag == Tag::kSettled || tag == Tag::kOwn || tag == Tag::kStep || tag == Tag::kDone;
 }
 
 void put_header(ByteWriter& to, const TraceHeader& header);
 void put_actions(ByteWriter& to, const TraceHeader::JointActions& actions);
+void put_later(ByteWriter& to, const std::vector<std::string>& later);
 void put_terms(ByteWriter& to, const policy::LiveTerms& terms);
 void put_start(ByteWriter& to, const TraceStart& start);
 void put_own(ByteWriter& to, const TraceStep& step);
@@ -48,6 +50,7 @@ void put_end(ByteWriter& to, const TraceEnd& end);
 // Nothing if the bytes do not have the form of the record, all of them.
 std::optional<TraceHeader> get_header(std::span<const std::byte> bytes);
 std::optional<TraceHeader::JointActions> get_actions(std::span<const std::byte> bytes);
+std::optional<std::vector<std::string>> get_later(std::span<const std::byte> bytes);
 std::optional<policy::LiveTerms> get_terms(std::span<const std::byte> bytes);
 std::optional<TraceStart> get_start(std::span<const std::byte> bytes);
 std::optional<std::vector<vm::OwnPlace>> get_own(std::span<const std::byte> bytes);

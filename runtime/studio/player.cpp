@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "runtime/base/clock.h"
+#include "runtime/plan/later.h"
 #include "runtime/rejudge/explain.h"
 #include "runtime/rejudge/explain_json.h"
 #include "runtime/run/episode.h"
@@ -126,7 +127,7 @@ Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
        {"task", header.task},
        {"start", wish.start},
        {"policy", wish.policy},
-       {"prompt", header.prompt},
+       {"prompt", plan::whole_instruction(header.prompt, header.later)},
        {"horizon", header.horizon},
        {"hz", header.control_hz},
        {"metrics", std::move(names)}});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/plan/later.h"
 #include "runtime/plan/roles.h"
 
 namespace probe::studio {
@@ -18,7 +19,7 @@ std::string role_of(const plan::Plan& plan, const plan::TaskRecord& task, std::s
   }
   for (const plan::RoleRecord& role : roles.things) {
     if (plan::thing_in(plan.tables(), task, role) == object)
-      return std::string(plan.text(role.name));
+      return plan::is_part_distractor(role) ? "distractor" : std::string(plan.text(role.name));
   }
   return "";
 }
@@ -28,7 +29,8 @@ Json task_json(const Shown& shown, const plan::TaskRecord& task) {
   const std::string_view name = plan.text(task.name);
   Json out = Json::object();
   out["name"] = name;
-  out["prompt"] = plan.text(task.prompt);
+  out["prompt"] = plan::whole_instruction(
+      plan.tables(), static_cast<std::uint32_t>(&task - plan.tasks().data()));
   out["baseline"] =
       task.baseline == plan::kNone ? Json() : Json(plan.text(plan.tasks()[task.baseline].name));
   out["axes"] = plan::moved_axes(plan.tables(), task);

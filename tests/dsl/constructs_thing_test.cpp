@@ -117,6 +117,6 @@ TEST_CASE("thing: what does not fit a role is said") {
   CHECK(said("task t like base { scene room; layout alone; metrics stored; source red; target "
              "chest.drawer; say \"put {the source} in {the target}\" }\n") == "P0601");
   CHECK(said("role goods: set\ntask t like base { scene room; layout alone; metrics stored; source "
-             "red; goods chest.drawer; target chest.inside; say \"put {the source} in {the "
+             "red; goods chest.top; target chest.inside; say \"put {the source} in {the "
              "target}\" }\n") == "P1105");
 }

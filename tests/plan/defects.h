@@ -286,6 +286,23 @@ inline void give_claims(Records& r, Writer& w, std::uint32_t count) {
   }
 }
 
+// The first tasks say "stop" when something holds that never does.
+inline void give_later(Records& r, Writer& w, std::uint32_t count) {
+  ProgramRecord program;
+  const std::vector<Instruction> code = {make_instruction(Op::kKB, 0, 0),
+                                         make_instruction(Op::kEMITB, 1, 0, 0),
+                                         make_instruction(Op::kEND, 1)};
+  const std::vector<MetricRecord> metrics = {{w.text("when"),
+                                              static_cast<std::uint32_t>(MetricType::kBool),
+                                              static_cast<std::uint32_t>(Readout::kAtEnd)}};
+  program.code = append<Instruction>(r.code, code);
+  program.metrics = append<MetricRecord>(r.metrics, metrics);
+  program.hash = program_hash(r.tables(), program).bytes;
+  r.programs.push_back(program);
+  for (std::uint32_t i = 0; i < count; ++i)
+    r.later.push_back({i, static_cast<std::uint32_t>(r.programs.size() - 1), w.text("stop"), {}});
+}
+
 // A texture on the given part, of nobody yet.
 inline void give_cover(Records& r, Writer& w, std::uint32_t what) {
   r.covers.push_back({what, add_asset(w, "textures/wood.png", AssetKind::kPhoto), 0.1});
@@ -370,6 +387,12 @@ inline std::vector<Defect> task_defects() {
          give_claims(r, w, 1), r.metrics[3].name = w.text("body_1");
          r.programs[1].metrics.count = 1;
        }},
+      {"THEN", "stands behind one of task 1",
+       [](Records& r, Writer& w) { give_later(r, w, 2), std::swap(r.later[0], r.later[1]); }},
+      {"THEN", "twice in turn",
+       [](Records& r, Writer& w) { give_later(r, w, 1), r.later[0].text = r.tasks[0].prompt; }},
+      {"THEN", "is one truth",
+       [](Records& r, Writer& w) { give_later(r, w, 1), r.later[0].program = 0; }},
       {"OBJT", "scaled by", [](Records& r, Writer&) { r.objects[0].scale = 1000; }},
       {"OBJT", "a density or a mass",
        [](Records& r, Writer&) {
@@ -472,7 +495,7 @@ inline std::vector<Defect> task_defects() {
        [](Records& r, Writer&) { r.metrics[1].readout = 9; }},
       {"ROLE", "role kind",
        [](Records& r, Writer& w) {
-         r.roles.push_back({w.text("helper"), 7, 2, 1});
+         r.roles.push_back({w.text("helper"), 9, 2, 1});
        }},
       {"ROLE", "ends beyond the",
        [](Records& r, Writer&) {

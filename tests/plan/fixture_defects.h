@@ -57,6 +57,29 @@ inline std::vector<Defect> fixture_defects() {
          r.roles = {{w.text("target"), 4, kDrawerBody, 1, 0, 0}};
          r.tasks[0].roles = {0, 1};
        }},
+      {"TASK", "two roles of task `carrot_on_plate` have one name",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("drawers"), 6, kDrawerBody, 1, 0, 0},
+                    {w.text("helper"), 4, kDrawerBody, 1, 0, 0},
+                    {w.text("drawers"), 6, kDrawerBody, 1, 0, 0}};
+         r.tasks[0].roles = {0, 3};
+       }},
+      {"TASK", "is listed twice",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("drawers"), 6, kDrawerBody, 1, 0, 0},
+                    {{}, 7, kDrawerBody, 1, 0, 0}};
+         r.tasks[0].roles = {0, 2};
+       }},
+      {"ROLE", "a role has a name of its own",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("drawers"), 7, kDrawerBody, 1, 0, 0}};
+         r.tasks[0].roles = {0, 1};
+       }},
+      {"ROLE", "a role has a name of its own",
+       [](Records& r, Writer& w) {
+         r.roles = {{w.text("target"), 6, kDrawerBody, 1, 0, 0}};
+         r.tasks[0].roles = {0, 1};
+       }},
       {"TASK", "stands behind one of a part or region",
        [](Records& r, Writer& w) {
          r.roles = {{w.text("place"), 5, 0, 1, 0, 0}, {w.text("helper"), 1, 2, 1, 0, 0}};

@@ -68,7 +68,8 @@ CONSTRUCTS = {
     # what is varied
     "words": ("the instruction is worded otherwise", 'template other frame put "set {the source} down on {the target}"\ntask t like plain { say other }\n'),
     "words: two, one after the other": ("the instruction changes in the course of the episode",
-        'task t like plain { say "open the drawer" then "put the carrot in it" }\n'),
+        goal("opened(cabinet.top_drawer) and in_contact(source, plate)", 'say "open {the cabinet.top_drawer}"; '
+             'then say "put {the source} on {the target}" when opened(cabinet.top_drawer) or step >= 101')),
     "more objects": ("other things lie about", "task t like plain { distractors mug, bottle }\n"),
     "camera": ("the camera stands elsewhere", "camera aside like agentview { mount panda.link0 at (130cm, 20cm, 70cm) look (-0.77, -0.12, -0.62) }\nscene seen like counter { camera aside }\ntask t like plain { scene seen }\n"),
     "light": ("light of other power or direction", "light dim { ambient 0.2; sun (0, 0, -1) power 0.7 }\nscene lit like counter { light dim }\ntask t like plain { scene lit }\n"),

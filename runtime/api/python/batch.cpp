@@ -98,6 +98,12 @@ py::list metrics_of(const Batch& batch) {
   return all;
 }
 
+py::object instruction_of(const Batch& batch, std::size_t world) {
+  const char* text = vlaprobe_batch_instruction(batch.get(), world);
+  if (text == nullptr) return py::none();
+  return py::str(text);
+}
+
 std::string hash_of(const Batch& batch, std::size_t world) {
   char hash[65];
   call([&](vlaprobe_error* error) { return vlaprobe_batch_hash(batch.get(), world, hash, error); });
@@ -137,6 +143,7 @@ void add_batch(py::module_& module) {
       .def("fault", &fault_of)
       .def("cameras", &cameras_of)
       .def("metrics", &metrics_of)
+      .def("instruction", instruction_of)
       .def("hash", &hash_of)
       .def("close", [](Batch& b) { b.handle.close(); });
 }

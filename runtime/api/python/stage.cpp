@@ -109,6 +109,8 @@ py::list metrics_of(const Stage& stage) {
   return all;
 }
 
+std::string instruction_of(const Stage& stage) { return vlaprobe_stage_instruction(stage.get()); }
+
 std::string hash_of(const Stage& stage) {
   char hash[65];
   call([&](vlaprobe_error* error) { return vlaprobe_stage_hash(stage.get(), hash, error); });
@@ -175,6 +177,7 @@ void add_stage(py::module_& module) {
       .def("joint_names", [](const Stage& s) { return names(s, &vlaprobe_stage_joint); })
       .def("object_names", [](const Stage& s) { return names(s, &vlaprobe_stage_object); })
       .def("body_names", [](const Stage& s) { return names(s, &vlaprobe_stage_body); })
+      .def("instruction", instruction_of)
       .def("hash", &hash_of)
       .def("save", &saved)
       .def("restore", &restore)

@@ -86,6 +86,12 @@ class Maker {
                      "`: its world did not wait for its policy, and its run's record says it did";
       return made;
     }
+    if (!trace->header.later.empty()) {
+      made.refused = store::to_text(store::key_of(row)) + " of `" + source_.dir +
+                     "`: its instruction changes in the course of the episode, and a "
+                     "demonstration has one";
+      return made;
+    }
     Demonstration& demonstration = made.demonstration;
     demonstration.run = source_.dir;
     demonstration.row = row;

@@ -32,6 +32,9 @@ class Intact : public Transport {
   void close() override { connection_.close(); }
 
   Result<std::vector<RawAction>> ask(const Request& request, const Deadlines& deadlines) override {
+    // In the course of an episode, too, another instruction reaches Octo by a reset alone.
+    if (said_ && *said_ != request.prompt) PROBE_TRY(reset(deadlines));
+    said_ = request.prompt;
     wire::Map map;
     append_images(request, &map);
     if (!request.state.empty()) {
@@ -52,9 +55,11 @@ class Intact : public Transport {
   // Its wrappers keep the instruction (Octo's until a reset), pictures and chunks. Whoever was
   // killed or cut off in an episode has not said that it ended.
   Status begin_episode(const policy::EpisodeStart&, const Deadlines& deadlines) override {
+    said_.reset();
     return reset(deadlines);
   }
   Status end_episode(const policy::EpisodeEnd&, const Deadlines& deadlines) override {
+    said_.reset();
     return reset(deadlines);
   }
 
@@ -96,6 +101,7 @@ class Intact : public Transport {
   std::string model_;
   std::shared_ptr<SharedModel> shared_ = std::make_shared<SharedModel>();
   wire::Value metadata_;
+  std::optional<std::string> said_;  // of this episode's last question
   bool was_open_ = false;
 };
 

@@ -217,6 +217,9 @@ TEST_CASE("a robot may have no fingers; then it has no grip, and metrics ask for
       bare + scene + asks + "task no like red_on_tray { scene stump_bench; metrics by_hand }");
   CHECK(a->codes() == "P1003");
   CHECK(a->underlined() == "taken");
+  CHECK(a->said().find("metric `taken` asks for fingers, which `stump` has not") !=
+        std::string::npos);
+  CHECK(a->said().find("by `fingers`") != std::string::npos);
 }
 
 TEST_CASE("drives fit the description: each moving joint has one, in the order of actions") {

@@ -99,6 +99,8 @@ static void of_stages(const vlaprobe_plan* plan, size_t task) {
   EMPTY(vlaprobe_stage_camera(NULL, 0));
   EMPTY(vlaprobe_stage_metric(NULL, 0));
   EMPTY(vlaprobe_stage_metric_is_truth(NULL, 0));
+  EMPTY(vlaprobe_stage_instruction(NULL));
+  EMPTY(vlaprobe_batch_instruction(NULL, 0));
   EMPTY(vlaprobe_stage_joint(NULL, 0));
   EMPTY(vlaprobe_stage_object(NULL, 0));
   EMPTY(vlaprobe_stage_body(NULL, 0));

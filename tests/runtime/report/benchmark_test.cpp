@@ -134,6 +134,11 @@ TEST_CASE("why episodes were not attempted is said as it was, whatever the reaso
   CHECK(says(benchmark, "2 of 3 episodes were not attempted: the expert does not plan ahead"));
   CHECK_FALSE(says(benchmark, "skills"));
   CHECK_FALSE(says(benchmark, "invalid"));
+  // The page counts them beside the invalid ones, and each says why.
+  const auto data = page_data(benchmark, {.title = "apart"});
+  CHECK(data["policies"][0]["runs"][0]["not_attempted"] == 2);
+  CHECK(data["policies"][0]["runs"][0]["invalid"] == 0);
+  CHECK(data["reasons"][0] == "not attempted: the expert does not plan ahead");
 }
 
 TEST_CASE("runs of different plans are joined where tasks agree and kept apart where they do not") {

@@ -90,7 +90,7 @@ class Env(_gym.Env):
     success: 1 or 0. Episodes terminate where the task's text ends them (``ends when``), and are truncated at the horizon.
     As in a run, an episode that has succeeded goes on until then: the verdict counts at its end.
 
-    ``info`` has: metrics (a dict, truths as bool), is_success (bool), prompt (str), task (str), episode_index (int: the start,
+    ``info`` has: metrics (a dict, truths as bool), is_success (bool), prompt (str: what a policy is told now), task (str), episode_index (int: the start,
     not `episode`, under which gymnasium's wrappers keep statistics), steps (int), decided (bool: no verdict can change any more).
 
     Which episode reset() begins: ``options={"episode": 3}`` if given, else the one the environment was made with, else
@@ -100,7 +100,7 @@ class Env(_gym.Env):
     copy goes on in another process.
 
     Attributes:
-        task_description: the instruction, as LeRobot asks for it.
+        task_description: the instruction as it is now, as LeRobot asks for it.
         task: name of the task.
         plan: its plan.
         camera_names, joint_names, object_names, metric_names: in the order of the arrays.
@@ -212,7 +212,7 @@ class Env(_gym.Env):
 
     @property
     def task_description(self) -> str:
-        return self._task.instruction
+        return self._task.instruction if self._stage is None else self._stage.instruction()
 
     @property
     def task(self) -> str:
@@ -293,7 +293,7 @@ class Env(_gym.Env):
         info = {
             "metrics": metrics_dict(self._metrics, metrics),
             "is_success": success,
-            "prompt": self._task.instruction,
+            "prompt": stage.instruction(),
             "task": self._task.name,
             "episode_index": episode,
             "steps": steps,

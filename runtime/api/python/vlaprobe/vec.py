@@ -236,7 +236,10 @@ class VectorEnv(_gym.VectorEnv):
             tasks = [by_index.get(int(task), self._pools[i][0]) for i, task in enumerate(now)]
             if not self._has_begun:
                 tasks = [pool[0] for pool in self._pools]
-            return tuple(per_world[name](task) for task in tasks)
+            said = [per_world[name](task) for task in tasks]
+            if name == "task_description" and self._has_begun:
+                said = [self._open().instruction(i) or words for i, words in enumerate(said)]
+            return tuple(said)
         return tuple(getattr(self, name) for _ in range(self.num_envs))
 
     def set_attr(self, name: str, values: Any) -> None:
@@ -324,7 +327,14 @@ class VectorEnv(_gym.VectorEnv):
         observations["joints"] = array(_vlaprobe.FIELD_JOINTS, 0, self._copy)
         return observations
 
-    def _infos(self, array: Any, mask: np.ndarray) -> dict:
+    def _prompts(self, tasks: list[Any], is_now: bool) -> np.ndarray:
+        """What policies are told; of an episode that has ended its first sentence."""
+        told = [task.instruction if task else None for task in tasks]
+        if is_now:
+            told = [self._open().instruction(i) if task else None for i, task in enumerate(tasks)]
+        return np.array(told, dtype=object)
+
+    def _infos(self, array: Any, mask: np.ndarray, is_now: bool = True) -> dict:
         by_index = {task.index: task for task in self._tasks}
         tasks = [by_index.get(int(task)) for task in array(_vlaprobe.FIELD_TASK, 0, False)]
         values = array(_vlaprobe.FIELD_METRICS, 0, True)
@@ -336,7 +346,7 @@ class VectorEnv(_gym.VectorEnv):
         infos: dict[str, Any] = {
             "metrics": metrics,
             "is_success": array(_vlaprobe.FIELD_SUCCESS, 0, True).astype(bool) & mask,
-            "prompt": np.array([task.instruction if task else None for task in tasks], dtype=object),
+            "prompt": self._prompts(tasks, is_now),
             "task": np.array([task.name if task else None for task in tasks], dtype=object),
             "episode_index": array(_vlaprobe.FIELD_EPISODE, 0, True).astype(np.int64),
             "steps": array(_vlaprobe.FIELD_STEPS, 0, True).astype(np.int64),
@@ -353,7 +363,7 @@ class VectorEnv(_gym.VectorEnv):
         for i in np.flatnonzero(at_end):
             observations[i] = _row(last, i)
         infos["final_obs"], infos["_final_obs"] = observations, at_end.copy()
-        infos["final_info"], infos["_final_info"] = self._infos(final, at_end), at_end.copy()
+        infos["final_info"], infos["_final_info"] = self._infos(final, at_end, is_now=False), at_end.copy()
 
     def __reduce__(self) -> Any:
         raise UsageError("a vector environment has threads and cannot be pickled; pickle its plan, or an Env")

@@ -13,7 +13,7 @@ export interface Run {
 }
 export interface Policy { name: string; label: string; role: string; runs: Run[] }
 export interface Task {
-  plan: number; name: string; baseline: number | null; axes: string[]; categories: number[]; prompt: string;
+  plan: number; name: string; baseline: number | null; axes: string[]; categories: number[]; prompt: string; then?: string[];
   source: number; target: number; roles?: { name: string; objects: number[] }[]; distractors: number[]; ood: string[]; horizon: number; hz: number; scene?: string;
   metrics: number[]; confounded?: string | null; unpaired?: string; allowed?: { word: string; reason: string }[];
   starts?: number[][][]; rule?: { file: string; line: number; text: string };
@@ -22,6 +22,10 @@ export type Column = ArrayLike<number>;
 export interface Episodes {
   count: number; policy: Column; task: Column; start: Column; seed: Column; bits: Column; more_bits?: Column[]; steps: Column;
   reason: Column; prompt: Column; video?: Column; remarks?: Record<string, number>; numbers?: Record<string, (number | null)[]>;
+}
+// All that a task says, in one line.
+export function instruction(task: Task): string {
+  return [task.prompt, ...(task.then ?? [])].join("; then: ");
 }
 // A number holds 52 of an episode's truths exactly.
 export function isTrue(e: Episodes, row: number, m: number): boolean {

@@ -2,6 +2,7 @@
 import { axisStyle, chart, percentAxis, tooltip, whiskers } from "../chart";
 import { breakable, h, replace, simpleTable } from "../dom";
 import { percent, rate, spoken } from "../format";
+import { instruction } from "../model";
 import { details, legend, metricsNamed, nothing, type Panel, panel, policyLabel, shortCell, wasRun } from "../parts";
 import type { State } from "../state";
 import { decal, policyColor, token } from "../theme";
@@ -14,7 +15,7 @@ function one(state: State, task: number, metrics: number[]): HTMLElement {
   const slots = state.chosen.length, width = slots > 5 ? 8 : 11, gap = 0.25;
   const record = data.tasks[task]!;
   const label = `${record.name}. ` + state.chosen.map((p) => `${data.policies[p]!.label}: ` + metrics.map((m) => `${data.metrics[m]!.label} ${percent(rate(at(p, m)))} %`).join(", ")).join("; ");
-  return h("figure", { class: "case" }, h("figcaption", {}, h("a", { href: `#task-${task}` }, breakable(record.name)), h("q", { class: "prompt" }, record.prompt)),
+  return h("figure", { class: "case" }, h("figcaption", {}, h("a", { href: `#task-${task}` }, breakable(record.name)), h("q", { class: "prompt" }, instruction(record))),
     chart(label, 210, () => ({
       grid: { left: 4, right: 6, top: 10, bottom: 4, containLabel: true },
       xAxis: { ...axisStyle(), type: "category", data: metrics.map((m) => data.metrics[m]!.label), axisLabel: { color: token("--ink"), fontSize: 12, interval: 0 } },

@@ -1,7 +1,7 @@
 // Base tasks beside their rewordings, policies down: the layout of the published language table.
 import { type Child, h, replace, scroller, select } from "../dom";
 import { percent, plural, points, probability } from "../format";
-import { type Contrast, metricIndex, taskName } from "../model";
+import { type Contrast, instruction, metricIndex, taskName } from "../model";
 import { details, isReal, kConfounded, mainMetrics, nothing, type Panel, panel, policyLabel, shortCell, stars, wasRun } from "../parts";
 import type { State } from "../state";
 
@@ -53,7 +53,7 @@ export function language(state: State): Panel {
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Policy"), [base, ...variants].map((t, i) => h("th", { scope: "col" },
       i === 0 ? "original" : data.tasks[t]!.axes.filter(isLanguage).map(shortAxis).join(" + "),
       i > 0 && data.tasks[t]!.axes.some((a) => !isLanguage(a)) ? h("abbr", { class: "dagger", title: `also moved: ${data.tasks[t]!.axes.filter((a) => !isLanguage(a)).join(", ")}` }, kConfounded) : null,
-      h("q", { class: "prompt" }, data.tasks[t]!.prompt))))),
+      h("q", { class: "prompt" }, instruction(data.tasks[t]!)))))),
     h("tbody", {}, state.chosen.map((p) => h("tr", {}, h("th", { scope: "row" }, policyLabel(state, p)),
       [base, ...variants].map((t, i) => h("td", {}, shortCell(data.tables.by_task?.[data.metrics[metric]!.name]?.[p]?.[t] ?? null),
         i > 0 ? change(data.tables.deltas?.find((d) => d.policy === p && d.task === t && d.metric === metric)) : null)))))));

@@ -1,7 +1,7 @@
 // From all tasks to one task's starts: who did what at which start. One episode more is panels/episode.ts.
 import { breakable, type Child, h, replace, scroller, select } from "../dom";
 import { percent, points, probability, rate, spoken } from "../format";
-import { type Data, isTrue, metricIndex, objectName, taskName } from "../model";
+import { type Data, instruction, isTrue, metricIndex, objectName, taskName } from "../model";
 import { kConfounded, nothing, novel, type Panel, panel, policyLabel } from "../parts";
 import type { State } from "../state";
 import { episodeView } from "./episode";
@@ -77,7 +77,7 @@ function taskView(state: State, task: number, open: (row: number) => void): Chil
   const t = data.tasks[task]!;
   const thing = (o: number, role?: "source" | "target"): Child => o < 0 ? "none" : [objectName(data, o), role && data.objects[o]?.seen?.[role] === false ? novel() : null];
   const facts: [string, Child][] = [
-    ["Instruction", h("q", { class: "prompt" }, t.prompt)],
+    ["Instruction", h("q", { class: "prompt" }, instruction(t))],
     ["Source", thing(t.source, "source")], ["Target", thing(t.target, "target")],
     ...(t.roles ?? []).map((r): [string, Child] => [r.name ? r.name[0]!.toUpperCase() + r.name.slice(1) : "Placed", r.objects.map((o) => objectName(data, o)).join(", ")]),
     ["Distractors", t.distractors.length ? t.distractors.map((o) => objectName(data, o)).join(", ") : "none"],
@@ -128,9 +128,9 @@ export function tasks(state: State): Panel {
   const fill = (): void => {
     const needle = words.trim().toLowerCase();
     const of = data.metrics[metrics[metric]!];
-    const shown = [...data.tasks.keys()].filter((t) => (category === 0 || data.tasks[t]!.categories.includes(category - 1)) && (!needle || data.tasks[t]!.name.toLowerCase().includes(needle) || data.tasks[t]!.prompt.toLowerCase().includes(needle)));
+    const shown = [...data.tasks.keys()].filter((t) => (category === 0 || data.tasks[t]!.categories.includes(category - 1)) && (!needle || data.tasks[t]!.name.toLowerCase().includes(needle) || instruction(data.tasks[t]!).toLowerCase().includes(needle)));
     replace(body, shown.map((t) => h("tr", {}, h("th", { scope: "row" }, h("a", { href: `#task-${t}`, click: () => { if (location.hash === `#task-${t}`) openTask(t); } }, breakable(data.tasks[t]!.name)),
-      data.tasks[t]!.confounded ? h("abbr", { class: "dagger", title: data.tasks[t]!.confounded }, kConfounded) : null, h("q", { class: "prompt" }, data.tasks[t]!.prompt)),
+      data.tasks[t]!.confounded ? h("abbr", { class: "dagger", title: data.tasks[t]!.confounded }, kConfounded) : null, h("q", { class: "prompt" }, instruction(data.tasks[t]!))),
       state.chosen.map((p) => { const e = data.tables.by_task?.[of?.name ?? ""]?.[p]?.[t] ?? null; return h("td", { class: "number", title: spoken(e) }, e ? [h("b", {}, percent(rate(e))), h("small", {}, ` ${e[0]}/${e[1]}`)] : "\u2013"); }))),
       shown.length ? null : h("tr", {}, h("td", { colspan: state.chosen.length + 1, class: "nothing" }, "No task fits.")));
   };

@@ -1,0 +1,58 @@
+// What is left of an answer when the instruction changes.
+#include "runtime/servers/server_policy.h"
+
+#include <doctest/doctest.h>
+
+#include "runtime/servers/profile_library.h"
+
+namespace probe::servers {
+namespace {
+
+// Answers three actions, which count from ten times the number of the question.
+class Thrice final : public Transport {
+ public:
+  explicit Thrice(std::vector<std::string>& asked) : asked_(asked) {}
+  Status open(const Deadlines&) override { return {}; }
+  void close() override {}
+  Result<std::vector<RawAction>> ask(const Request& request, const Deadlines&) override {
+    asked_.push_back(request.prompt);
+    std::vector<RawAction> actions(3, RawAction(7));
+    for (std::size_t i = 0; i < actions.size(); ++i)
+      actions[i][0] = 10 * static_cast<double>(asked_.size()) + static_cast<double>(i);
+    return actions;
+  }
+
+ private:
+  std::vector<std::string>& asked_;
+};
+
+}  // namespace
+
+TEST_CASE("what was answered to another instruction is not done under this one") {
+  std::vector<std::string> asked;
+  auto profile = find_profile("simpler_shim");
+  REQUIRE_MESSAGE(profile.ok(), to_text(profile.failure()));
+  profile->chunk_length = Profile{}.chunk_length;
+  profile->chunk_use = Profile{}.chunk_use;
+  ServerPolicy policy(*profile, "here", std::make_unique<Thrice>(asked), nullptr);
+  const auto begun = policy.begin({});
+  REQUIRE_MESSAGE(begun.ok(), to_text(begun.failure()));
+  const std::vector<std::uint8_t> picture(8 * 6 * 3, 7);
+  const auto act = [&](std::string_view prompt) {
+    policy::Observation seen;
+    seen.image = {8, 6, picture};
+    seen.prompt = prompt;
+    const auto action = policy.act(seen);
+    REQUIRE_MESSAGE(action.ok(), to_text(action.failure()));
+    return (*action)[0];
+  };
+  CHECK(act("open it") == 10);
+  CHECK(act("open it") == 11);
+  CHECK(act("put it in") == 20);
+  CHECK(act("put it in") == 21);
+  CHECK(act("put it in") == 22);
+  CHECK(act("put it in") == 30);
+  CHECK(asked == std::vector<std::string>{"open it", "put it in", "put it in"});
+}
+
+}  // namespace probe::servers
