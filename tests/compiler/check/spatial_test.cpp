@@ -164,7 +164,7 @@ TEST_CASE("words say the relation that proves or judges them") {
   // Of two things it is the other way round.
   const auto turned = [&](const std::string& side) {
     return mistake(
-        "metrics m { success = at end left_of(target, source) }\n"
+        "metrics m { success = at end (left_of(target, source) and moved_xy(source) > 3cm) }\n"
         "task t like red_on_tray { metrics m; say \"put {the source} to the " +
         side + " of {the target}\" }");
   };
