@@ -12,6 +12,7 @@
 #include "compiler/audit/rules.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/derived_solution.h"
@@ -201,7 +202,9 @@ class Auditor {
     const plan::TaskRecord& task = plan_.tasks()[index];
     if ((task.axes & plan::kLanguageAxes) == 0) return;
     const std::string_view prompt = plan_.text(task.prompt);
-    if (prompt != plan_.text(plan_.tasks()[task.baseline].prompt)) return;
+    if (plan::whole_instruction(plan_.tables(), index) !=
+        plan::whole_instruction(plan_.tables(), task.baseline))
+      return;
     add(comparison(Kind::kSamePrompt, index, fmt::format("{}: both say \"{}\"", pair, prompt)));
   }
 

@@ -9,6 +9,7 @@
 #include "compiler/check/called.h"
 #include "compiler/check/said.h"
 #include "compiler/define/template.h"
+#include "runtime/base/check.h"
 #include "runtime/base/utf8.h"
 
 namespace probe::sema {
@@ -122,6 +123,7 @@ class ClauseReader {
   Clauses run() {
     while (at_ < words_.size()) {
       const Match word = match(at_);
+      const std::size_t before = at_;
       if (denies_first(word)) {
         at_ += word.length;
         clause(match(at_));
@@ -143,6 +145,7 @@ class ClauseReader {
       } else if (!leading_place() && !same_again()) {
         unknown();
       }
+      PROBE_CHECK(at_ > before, "a clause has words");
     }
     return std::move(out_);
   }
@@ -363,7 +366,8 @@ class ClauseReader {
   // What stands behind the verb.
   void finish(Clause clause, std::size_t from) {
     idle();
-    if (!ends_at(at_)) {
+    // A clause without a verb begins behind a sign.
+    if (at_ == from || !ends_at(at_)) {
       if (auto what = nouns(at_, false); what && !what->is_place) {
         clause.what = what->what;
         at_ = what->end;

@@ -110,7 +110,7 @@ Json pod_security() {
 Json worlds_container(const KubernetesJob& job) {
   std::vector<std::string> call = {kProgram,     "run",          "/plan/suite.plan",
                                    "--shard",    fmt::format("@$(SHARD)/{}", job.tasks),
-                                   "-o",         folder_of(job) + "/shards/$(SHARD)",
+                                   "-o",         fmt::format("{}/shards/$(SHARD)-of-{}", folder_of(job), job.tasks),
                                    "--policy",   job.policy,
                                    "--name",     job.row_name,
                                    "--jobs",     std::to_string(job.worlds)};
@@ -212,7 +212,7 @@ Result<std::string> merge_manifest(const KubernetesJob& job) {
   PROBE_TRY(check(job));
   std::vector<std::string> call = {kProgram, "merge"};
   for (int shard = 0; shard < job.tasks; ++shard)
-    call.push_back(fmt::format("{}/shards/{}", folder_of(job), shard));
+    call.push_back(fmt::format("{}/shards/{}-of-{}", folder_of(job), shard, job.tasks));
   call.insert(call.end(), {"-o", folder_of(job)});
   Json container = {{"name", "merge"}, {"image", job.image}, {"command", words(call)}};
   container["env"].push_back({{"name", "VLAPROBE_CACHE"}, {"value", ""}});

@@ -156,9 +156,20 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
 }
 
+namespace {
+
+// To be copied into a shell: names come from a folder that may be somebody else's.
+std::string why_command(const Failure& failure) {
+  return fmt::format("vlaprobe why {} {} {} {}", shell_word(printable(failure.dir, kLongestWhy)),
+                     shell_word(printable(failure.key.task, kLongestWhy)), failure.key.episode,
+                     failure.key.seed);
+}
+
+}  // namespace
+
 std::vector<std::string> to_lines(const Seen& seen) {
   const auto groups = [](std::int64_t n) { return digit_groups(static_cast<std::size_t>(n)); };
-  std::string line = seen.dir + ": " + groups(seen.rows);
+  std::string line = printable(seen.dir, kLongestWhy) + ": " + groups(seen.rows);
   if (seen.chosen) line += fmt::format(" of {}{}", seen.is_about ? "about " : "", groups(*seen.chosen));
   line += " episodes";
   if (seen.shards > 0 && seen.begun < seen.shards)
@@ -174,7 +185,8 @@ std::vector<std::string> to_lines(const Seen& seen) {
   std::vector<std::string> lines = {line};
   for (const auto& [name, count] : seen.rates) {
     const stats::Interval interval = stats::wilson(count);
-    lines.push_back(fmt::format("  {:<12} {:>9} of {:<9} {:>5} %  [{}]", name, groups(count.k),
+    lines.push_back(fmt::format("  {:<12} {:>9} of {:<9} {:>5} %  [{}]",
+                                printable(name, kLongestWhy), groups(count.k),
                                 groups(count.n), decimal_text(100 * count.rate(), 1),
                                 percent_range(interval.low, interval.high, "-")));
   }
@@ -183,9 +195,7 @@ std::vector<std::string> to_lines(const Seen& seen) {
     lines.push_back(fmt::format("  {:%H:%M:%S} {}: {}", fmt::localtime(ended),
                                 printable(store::to_text(failure.key), kLongestWhy),
                                 printable(failure.why, kLongestWhy)));
-    lines.push_back(fmt::format("           vlaprobe why {} {} {} {}", shell_word(failure.dir),
-                                shell_word(failure.key.task), failure.key.episode,
-                                failure.key.seed));
+    lines.push_back("           " + why_command(failure));
   }
   return lines;
 }
@@ -206,6 +216,7 @@ Json to_json(const Seen& seen) {
                       {"episode", failure.key.episode},
                       {"seed", failure.key.seed},
                       {"why", printable(failure.why, kLongestWhy)},
+                      {"command", why_command(failure)},
                       {"ended", failure.ended_s}});
   }
   const auto left = seen.left_s();
@@ -221,6 +232,7 @@ Json to_json(const Seen& seen) {
           {"begun", seen.begun},
           {"per_minute", 60 * seen.per_s},
           {"left_s", left ? Json(*left) : Json()},
+          {"left", left ? Json(duration_text(*left)) : Json()},
           {"rates", std::move(rates)},
           {"newest_failures", std::move(newest)}};
 }

@@ -35,7 +35,10 @@ struct Seen {
   std::vector<Failure> newest;                              // the newest first
   double per_s = 0;                                         // episodes, of the last minutes; 0: unknown
 
-  bool is_done() const { return chosen && !is_about && rows >= *chosen && begun == shards; }
+  // Never while something is written: rows of earlier calls count, too.
+  bool is_done() const {
+    return chosen && !is_about && !is_written && rows >= *chosen && begun == shards;
+  }
   std::optional<double> left_s() const;
 };
 

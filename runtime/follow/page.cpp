@@ -39,7 +39,6 @@ code { display: block; overflow-wrap: anywhere; } #trouble { color: #b3261e; }
 constexpr char kScript[] = R"js("use strict";
 const at = (id) => document.getElementById(id);
 const made = (kind, text, kindOf) => { const e = document.createElement(kind); e.textContent = text; if (kindOf) e.className = kindOf; return e; };
-const span = (s) => s < 100 ? `${Math.round(s)} s` : s < 6000 ? `${Math.round(s / 60)} min` : `${Math.floor(s / 3600)} h ${String(Math.round(s / 60) % 60).padStart(2, "0")} min`;
 function draw(run) {
   document.title = run.chosen ? `${Math.floor(100 * run.episodes / run.chosen)} % ${run.dir}` : run.dir;
   at("dir").textContent = run.dir;
@@ -49,7 +48,7 @@ function draw(run) {
   if (run.invalid) parts.push(`${run.invalid} invalid`);
   if (run.is_done) parts.push("done");
   else if (run.per_minute) parts.push(`${run.per_minute.toFixed(1)} a minute`);
-  if (!run.is_done && run.left_s !== null) parts.push(`${span(run.left_s)} left`);
+  if (!run.is_done && run.left !== null) parts.push(`${run.left} left`);
   at("counts").textContent = parts.join(", ");
   at("bar").value = run.chosen ? Math.min(1, run.episodes / run.chosen) : 0;
   at("rates").replaceChildren(...run.rates.map((rate) => {
@@ -61,7 +60,7 @@ function draw(run) {
   at("newest").replaceChildren(...run.newest_failures.map((one) => {
     const item = document.createElement("li");
     item.append(made("span", `${new Date(1000 * one.ended).toLocaleTimeString()} ${one.task} episode ${one.episode} seed ${one.seed}: ${one.why}`),
-      made("code", `vlaprobe why ${one.dir} ${one.task} ${one.episode} ${one.seed}`));
+      made("code", one.command));
     return item;
   }));
 }

@@ -161,6 +161,7 @@ class LivePolicy final : public Policy {
     int asked;
     Time seen;                               // when its observation was there
     std::optional<Answerer::Answer> answer;  // of Standing
+    std::string prompt;                      // that it was asked with
   };
 
   // The world's step k begins k periods after its first.
@@ -180,7 +181,7 @@ class LivePolicy final : public Policy {
 
   Status ask(const Observation& now, Time when) {
     live_.asks = true;
-    question_ = Question{now.step, seen_, std::nullopt};
+    question_ = Question{now.step, seen_, std::nullopt, std::string(now.prompt)};
     if (is_paced_) return halves_->ask(now, begun_ + std::max(now.horizon, now.step + 1) * period_);
     if (recorded_) return halves_->ask(now, Time::max());
     Standing standing(*inner_, terms_.delay_s);
@@ -205,8 +206,11 @@ class LivePolicy final : public Policy {
       if (!answer) return {};
       const int asked = question_->asked;
       live_.answers.push_back({asked, in_seconds(answer->came - question_->seen)});
+      // What was answered to another instruction is not averaged into this one's.
+      const bool is_same = question_->prompt == answered_prompt_;
+      answered_prompt_ = std::move(question_->prompt);
       question_.reset();
-      answers_.put(asked, std::move(answer->actions), ratio().has_value());
+      answers_.put(asked, std::move(answer->actions), ratio().has_value() && is_same);
       next_ = asked + std::max(1, halves_ != nullptr ? halves_->steps_between(asked) : 1);
       if (asked == step || next_ > step) return {};
       // The policy is free again in the middle of this step: it sees the newest picture at once,
@@ -249,6 +253,7 @@ class LivePolicy final : public Policy {
   Nanoseconds period_{0};
   Time begun_, seen_;  // the episode; this step's observation
   std::optional<Question> question_;
+  std::string answered_prompt_;  // of the newest answer
   int next_ = 0;  // step of the next question, at the earliest
   LiveAnswers answers_;
   robot::ActionSpace space_;

@@ -132,8 +132,9 @@ namespace {
 // Rows some thousand at a time: proven side by side, then handed on in their order.
 class Prover {
  public:
-  Prover(const std::string& dir, const plan::Plan& plan, ProvenRun& run, const RowVisitor& visit)
-      : plan_(plan), run_(run), visit_(visit), book_(dir, plan) {}
+  Prover(const std::string& dir, const plan::Plan& plan, ProvenRun& run, const RowVisitor& visit,
+         const std::string& book)
+      : plan_(plan), run_(run), visit_(visit), book_(dir, plan, book) {}
 
   Status add(ResultRow&& row) {
     constexpr std::size_t kAtOnce = 4096;
@@ -221,13 +222,14 @@ class Prover {
 
 }  // namespace
 
-Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit) {
+Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit,
+                                      const std::string& book) {
   PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
   PROBE_ASSIGN(const plan::Plan plan, open_run_plan(dir));
   ProvenRun run;
   run.live_terms = record.identity.live;
   run.only_success = record.identity.only_success;
-  Prover prover(dir, plan, run, visit);
+  Prover prover(dir, plan, run, visit, book);
   PROBE_TRY(for_each_row(dir, [&](ResultRow&& row) { return prover.add(std::move(row)); }));
   PROBE_TRY(prover.end());
   return run;

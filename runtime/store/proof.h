@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/cache_folder.h"
 #include "runtime/plan/plan.h"
 #include "runtime/store/results.h"
 #include "runtime/store/trace.h"
@@ -35,9 +36,10 @@ struct ProvenRun {
 
 // Calls `visit` with the rows of a run that their traces bear, as for_each_row has them, with
 // `idle`, `delay`, `joints`. Reads traces on every core, some thousand rows ahead; those that were
-// proven before and have not changed since are not read again (ProofBook). Fails as for_each_row
-// and open_run_plan do.
-Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit);
+// proven before and have not changed since are not read again (ProofBook, in the folder `book`;
+// empty: all are read). Fails as for_each_row and open_run_plan do.
+Result<ProvenRun> for_each_proven_row(const std::string& dir, const RowVisitor& visit,
+                                      const std::string& book = cache_folder("proofs"));
 
 struct ProvenResults : ProvenRun {
   std::vector<ResultRow> rows;

@@ -77,6 +77,15 @@ void add_orphans(const fs::path& dir, const std::unordered_set<std::string>& kno
   }
 }
 
+std::pair<std::int64_t, std::int64_t> size_below(const fs::path& folder) {  // files, bytes
+  std::int64_t files = 0, all = 0;
+  each_file(folder, [&](const fs::path&, std::int64_t bytes) {
+    ++files;
+    all += bytes;
+  });
+  return {files, all};
+}
+
 // Why a shard's folder has to stay; empty: everything of it is in `merged`, hashes by row.
 std::string why_needed(const fs::path& shard,
                        const std::unordered_map<std::string, std::string>& merged) {
@@ -156,11 +165,15 @@ Result<Spares> find_spares(const std::string& dir) {
   const auto shards = list_folder(dir + "/shards");
   if (!shards || is_link(dir + "/shards")) return out;
   std::unordered_map<std::string, std::string> merged;
+  // A copy goes: the one that stays is read whole.
   PROBE_ASSIGN([[maybe_unused]] const ProvenRun proven,
-               for_each_proven_row(dir, [&](ResultRow&& row) -> Status {
-                 if (!row.invalid) merged[file_stem(key_of(row))] = row.trace_sha256;
-                 return {};
-               }));
+               for_each_proven_row(
+                   dir,
+                   [&](ResultRow&& row) -> Status {
+                     if (!row.invalid) merged[file_stem(key_of(row))] = row.trace_sha256;
+                     return {};
+                   },
+                   ""));
   for (const std::string& name : *shards) {
     const fs::path shard = fs::path(dir) / "shards" / name;
     if (is_link(shard.string()) || !is_file((shard / "results.sqlite").string())) continue;
@@ -169,22 +182,24 @@ Result<Spares> find_spares(const std::string& dir) {
       out.notes.push_back(shard.string() + " stays: it " + why);
       continue;
     }
-    Spare spare{shard.string(), 0, 0, "all of it is merged", true};
-    each_file(shard, [&](const fs::path&, std::int64_t bytes) {
-      ++spare.files;
-      spare.bytes += bytes;
-    });
-    out.spares.push_back(std::move(spare));
+    const auto [files, bytes] = size_below(shard);
+    out.spares.push_back({shard.string(), files, bytes, "all of it is merged", true});
   }
   return out;
 }
 
 Status remove_spares(const std::string& dir, const Spares& spares) {
   PROBE_ASSIGN([[maybe_unused]] const FolderLock lock, FolderLock::take(dir));
+  // What was committed since they were found is needed now; from here on nobody writes.
+  PROBE_ASSIGN(const Spares now, find_spares(dir));
   for (const Spare& spare : spares.spares) {
+    const auto still = std::ranges::find(now.spares, spare.path, &Spare::path);
+    if (still == now.spares.end()) continue;
     std::error_code error;
     if (spare.is_folder) {
       PROBE_ASSIGN([[maybe_unused]] const FolderLock own, FolderLock::take(spare.path));
+      const auto [files, bytes] = size_below(spare.path);
+      if (files != still->files || bytes != still->bytes) continue;
       fs::remove_all(spare.path, error);
     } else {
       fs::remove(spare.path, error);

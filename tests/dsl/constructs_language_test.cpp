@@ -59,7 +59,7 @@ TEST_CASE("slot: role, object, article, negation and category") {
       "variant d of red_on_tray { distractors pale }\n"
       "@allow(confounded, \"test\")\nvariant e of d { say \"put {source}, not {avoid the pale}, on "
       "{target}\"; horizon 62 steps }\n"
-      "@allow(confounded, \"test\")\nvariant f of d { say \"put {source} next to {the pale}\"; "
+      "@allow(confounded, \"test\")\nvariant f of d { say \"put {source} on the tray next to {the pale}\"; "
       "horizon 62 steps }\n");
   CHECK(a->task("a").prompt == "put red block on the tray");
   // A bare form takes no article.
@@ -68,7 +68,7 @@ TEST_CASE("slot: role, object, article, negation and category") {
   CHECK(a->task("e").prompt == "put red block, not the pale block, on tray");
   CHECK(axes_text(*a, "e") == "language.negation goal");
   CHECK(axes_text(*a, "f") == "language.paraphrase goal");
-  CHECK(a->task("f").prompt == "put red block next to the pale block");
+  CHECK(a->task("f").prompt == "put red block on the tray next to the pale block");
   CHECK(analyze_with_suite(
             "variant v of red_on_tray { say \"put {source: dish} on {target}\"; light night }")
             ->codes() == "P0407");

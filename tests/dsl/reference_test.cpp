@@ -129,6 +129,6 @@ TEST_CASE("the library compiles and shares no name with the suite") {
                    "metrics lifting }\nvariant pushed of with_library { "
                    "metrics pushing }\nvariants of with_library {\n"
                    "stacked { metrics stacking }\nfilled { metrics filling }\n"
-                   "cleared { metrics clearing }\ngone { metrics reaching } }\n");
+                   "cleared { metrics clearing; say move_away }\ngone { metrics reaching } }\n");
   CHECK_MESSAGE(both.ok, render_text(both.diagnostics, both.sources));
 }

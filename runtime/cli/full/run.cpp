@@ -34,6 +34,9 @@ int run_verb(const CallArguments& arguments) {
   if (options->accepts_any_certificate) warn_of_insecure(options->policy);
   std::unique_ptr<follow::FollowPage> page;
   if (!arguments.watch.empty()) {
+    // The folder that it would go to is known when it runs.
+    if (options->if_changed == run::IfChanged::kFork)
+      return report(Failure{Fault::kUsage, "--watch follows -o, which --if-changed fork leaves", ""});
     auto started = follow::FollowPage::start(options->out, arguments.watch);
     if (!started) return report(started.failure());
     page = std::move(*started);

@@ -110,6 +110,22 @@ TEST_CASE("what goes where is what success asks of the two") {
                     "put the cube on the fringe of the towel on the tray") == "");
 }
 
+TEST_CASE("a clause without a verb may stand behind any sign") {
+  for (const std::string sign : {",", ".", ";"}) {
+    CAPTURE(sign);
+    CHECK(told_of_two("(over(source, target) and over(helper, towel))",
+                      "put the cube on the tray" + sign + " the orange on the towel") == "");
+    CHECK(told_of_two("(over(source, target) and over(helper, towel))",
+                      "put the cube on the tray" + sign + " the orange on the tray") ==
+          "error[P1202]: `t` says \"the orange on the tray\" and success asks `over` of `orange` and "
+          "`towel`");
+  }
+  CHECK(told_of_one("over(source, target)", "put the cube on it, the tray on the table") == "");
+  CHECK(told_of_one("over(source, target)", "put cube, the tray on cube") ==
+        "error[P1202]: `t` says \"the tray on cube\" and success wants `cube` to be higher than "
+        "`tray`");
+}
+
 TEST_CASE("what is put somewhere is something that success speaks of") {
   CHECK(told_of_two("over(source, target)",
                     "put {the source} on {the target} and {the helper} on the towel") ==

@@ -58,7 +58,7 @@ TEST_CASE("an Indexed Job and its merge fit the API, and say what each shard run
                                            "--shard",
                                            "@$(SHARD)/3",
                                            "-o",
-                                           "/runs/pi0/shards/$(SHARD)",
+                                           "/runs/pi0/shards/$(SHARD)-of-3",
                                            "--policy",
                                            job.policy,
                                            "--name",

@@ -135,7 +135,7 @@ TEST_CASE("bytes that are no saved stage are refused with the reason") {
   CHECK(refusal(longer) == "the saved stage has another form than its version");
   std::vector<std::byte> newer = good;
   newer[8] = std::byte{7};
-  CHECK(refusal(newer) == "a saved stage of format 7, this program reads 1 to 3");
+  CHECK(refusal(newer) == "a saved stage of format 7, this program reads 1 to 4");
 }
 
 TEST_CASE("counts that a check word bears out take no memory and are refused") {
