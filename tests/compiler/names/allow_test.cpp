@@ -20,10 +20,10 @@ TEST_CASE("above a member of variants an @allow is about that member alone") {
     return analyze_with_suite("variants of red_on_tray {\n" + lines + "}")->codes();
   };
   CHECK(said(two) == "P0701");
-  CHECK(said("@allow(confounded, \"why\")\n" + two) == "");
-  CHECK(said("@allow(confounded, \"why\")\n" + two +
+  CHECK(said("  @allow(confounded, \"why\")\n" + two) == "");
+  CHECK(said("  @allow(confounded, \"why\")\n" + two +
              "b { light night; distractors pale }\n") == "P0701");
-  CHECK(said("@allow(confounded, \"why\")\nc { light night }\n") == "P0209");
+  CHECK(said("  @allow(confounded, \"why\")\nc { light night }\n") == "P0209");
 }
 
 TEST_CASE(
