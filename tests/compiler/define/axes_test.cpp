@@ -120,7 +120,7 @@ predicate up_high(o: object, least: length = 5cm) = height(o) > least
 predicate far_up(o: object, least: length = 5cm) = height(o) > least
 metrics one { success = at end (up_high(source) and no x in distractors: up_high(x, 50mm)) }
 metrics two { success = at end (far_up(source) and no x in distractors: far_up(x, 5cm)) }
-metrics three { success = at end (far_up(target) and no x in distractors: far_up(x, 5cm)) }
+metrics three { success = at end (far_up(source) and far_up(target) and no x in distractors: far_up(x, 5cm)) }
 task t like red_on_tray { metrics one }
 variant same of t { metrics two; light night }
 variant other of t { metrics three }
