@@ -8,6 +8,7 @@ use "std/place.probe"
 use "std/contact.probe"
 use "std/space.probe"
 use "std/fixtures.probe"
+use "std/controls.probe"
 role helper
 abstract task plain {{
   scene counter; layout spots; say put_the; horizon 300 steps; source carrot; target plate; metrics base
@@ -19,8 +20,9 @@ LAYOUT = "cells c = grid 2 x 2 at (-16cm, -4cm) spread (10.5cm, 11cm)\n  orient 
 
 
 def goal(condition, task=""):
-    """A task whose success is the condition."""
-    return f"metrics asked {{ success = at end ({condition}) }}\ntask t like plain {{ metrics asked; {task} }}\n"
+    """A task whose success is the condition; words that say nothing contradict none."""
+    words = "" if "say " in task else "say do_it; "
+    return f"metrics asked {{ success = at end ({condition}) }}\ntask t like plain {{ metrics asked; {words}{task} }}\n"
 
 
 def layout(lines, task=""):

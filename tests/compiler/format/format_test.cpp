@@ -95,7 +95,7 @@ TEST_CASE("comments stay where they are") {
 }
 
 TEST_CASE("an @allow stands on its own line") {
-  check_becomes("variants of b {\n@allow(confounded,\"x\") c { light l }\nd { light l } }",
+  check_becomes("variants of b {\n @allow(confounded,\"x\") c { light l }\nd { light l } }",
                 "variants of b {\n  @allow(confounded, \"x\")\n  c { light l }\n  d { light l }\n}\n");
   check_becomes("@allow(unused,\"x\")@allow(latch,\"y\") set a = b",
                 "@allow(unused, \"x\")\n@allow(latch, \"y\")\nset a = b\n");

@@ -17,7 +17,7 @@ TEST_CASE("a misspelt statement is one message that offers the nearest word") {
 1 | task a { soruce carrot; target plate }
   |          ^^^^^^ did you mean `source`?
   |
-  = help: expected one of `scene`, `layout`, `source`, `target`, `metrics`, `light`, `camera`, `distractors`, `say`, `refer`, `pose`, `start`, `horizon`, `idle`, `delay`, `moves`, `solution` or `set`
+  = help: expected one of `scene`, `layout`, `source`, `target`, `metrics`, `light`, `camera`, `distractors`, `say`, `then`, `refer`, `pose`, `start`, `horizon`, `idle`, `delay`, `moves`, `solution` or `set`
 )");
   const Decl& decl = parsed.decl(0);
   CHECK(!decl.complete);
