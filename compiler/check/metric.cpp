@@ -66,14 +66,14 @@ void check_fingers(const Model& model, Reporter& reporter, const Task& task,
   if (scene.robot == RobotId::kNone) return;
   const Robot& robot = model.robots[scene.robot];
   if (robot.broken || !robot.fingers.empty()) return;
-  for (const Metric& metric : measured_in(task)) {
+  for (const Metric* metric : measured_in(task)) {
     FingerFinder finder{model};
-    finder.visit(metric.expr);
+    finder.visit(metric->expr);
     if (finder.found == nullptr) continue;
-    if (!reported.insert({metric.span.file.value, metric.span.begin}).second) continue;
+    if (!reported.insert({metric->span.file.value, metric->span.begin}).second) continue;
     Diagnostic& said = report_of(
-        reporter, Situation::kFingersAskedFor, task, metric.span,
-        "metric `" + metric.name + "` asks for fingers, which `" + robot.name + "` has not");
+        reporter, Situation::kFingersAskedFor, task, metric->span,
+        "metric `" + metric->name + "` asks for fingers, which `" + robot.name + "` has not");
     said.label(finder.found->span, "by " + finder.what).label(task.span, "judged by it");
     said.help("`links` are all parts of a robot; judge `" + task.name +
               "` by metrics that need no gripper");
@@ -214,14 +214,14 @@ void check_metrics(const Model& model, Reporter& reporter) {
     check_success(model, reporter, task, without_success);
     check_count(model, reporter, task, without_success);
     check_fingers(model, reporter, task, without_fingers);
-    for (const Metric& metric : measured_in(task)) {
-      if (!searched.insert({metric.expr, task.horizon}).second) continue;
+    for (const Metric* metric : measured_in(task)) {
+      if (!searched.insert({metric->expr, task.horizon}).second) continue;
       HoldFinder finder{model, task.horizon, {}};
-      finder.visit(metric.expr);
+      finder.visit(metric->expr);
       for (const ExprRef hold : finder.too_long) {
         if (!reported.insert({hold, task.horizon}).second) continue;
         report_of(reporter, Code::P0604, task, model.exprs.nodes[hold].span,
-                  "metric `" + metric.name + "` can never become true in `" + task.name + "`")
+                  "metric `" + metric->name + "` can never become true in `" + task.name + "`")
             .point("the horizon is " + std::to_string(task.horizon) + " steps")
             .label(task.horizon_span, "set here");
       }

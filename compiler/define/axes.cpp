@@ -269,7 +269,8 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       return false;
   }
   if (a.later.size() != b.later.size() || !same_turns(model, a, b)) return false;
-  for (std::size_t i = 0; i < sentence_count(a); ++i) {
+  if (render_prompt(model, a) != render_prompt(model, b)) return false;
+  for (std::size_t i = 1; i < sentence_count(a); ++i) {
     if (render_prompt(model, telling(a, i)) != render_prompt(model, telling(b, i))) return false;
   }
   return true;

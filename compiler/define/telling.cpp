@@ -24,9 +24,10 @@ Task telling(const Task& task, std::size_t sentence) {
   return told;
 }
 
-std::vector<Metric> measured_in(const Task& task) {
-  std::vector<Metric> measured = task.judged;
-  for (const LaterSentence& later : task.later) measured.push_back(later.when);
+std::vector<const Metric*> measured_in(const Task& task) {
+  std::vector<const Metric*> measured;
+  for (const Metric& metric : task.judged) measured.push_back(&metric);
+  for (const LaterSentence& later : task.later) measured.push_back(&later.when);
   return measured;
 }
 

@@ -27,7 +27,7 @@ void for_each_telling(const Task& task, Check check) {
 }
 
 // What is measured of its episodes: its metrics, and the conditions of later sentences.
-std::vector<Metric> measured_in(const Task& task);
+std::vector<const Metric*> measured_in(const Task& task);
 
 // Whether the same brings the later sentences of two tasks, which are as many.
 bool same_turns(const Model& model, const Task& a, const Task& b);

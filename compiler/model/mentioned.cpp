@@ -18,9 +18,9 @@ const Mentioned& MentionedIn::expression(ExprRef ref) {
   return known_[ref];
 }
 
-Mentioned MentionedIn::metrics(std::span<const Metric> metrics) {
+Mentioned MentionedIn::metrics(std::span<const Metric* const> metrics) {
   Mentioned all;
-  for (const Metric& metric : metrics) all.add(expression(metric.expr));
+  for (const Metric* metric : metrics) all.add(expression(metric->expr));
   return all;
 }
 

@@ -25,7 +25,7 @@ class MentionedIn {
 
   const Mentioned& expression(ExprRef ref);
   // Of all metrics of a task.
-  Mentioned metrics(std::span<const Metric> metrics);
+  Mentioned metrics(std::span<const Metric* const> metrics);
 
  private:
   void look(ExprRef ref, Mentioned& out);
