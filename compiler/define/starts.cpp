@@ -418,6 +418,7 @@ void compare_choices(Model& model) {
   for (Task& task : model.tasks) {
     if (task.baseline == TaskId::kNone) continue;
     const Task& baseline = model.tasks[task.baseline];
+    if (!task.complete || !baseline.complete) continue;  // reported
     if (task.clear.empty() && baseline.clear.empty()) continue;
     task.axes = axes_between(model, task, baseline);
   }

@@ -210,6 +210,23 @@ TEST_CASE("a layout is cut to the starts in which a phrase is clear, for the bas
                        ->said()) == "error[P0402]: none of the 4 starts of `t` has clear phrases");
 }
 
+TEST_CASE("a task whose layout is cut is compared with no task that is not whole") {
+  const std::string half =
+      std::string(kRelations) +
+      "layout any { cells spots = grid 1 x 2 at (0cm, 0cm) spread (0cm, 20cm)\n"
+      "place source, blue in distinct spots; place tray at (-20cm, 0cm)\n"
+      "orient by rest; drop 10cm settle 0.5s }\n"
+      "task half { abstract; layout any where clear side of source; source sided }\n"
+      "task lost { scene nowhere; layout any where clear side of source; source sided }\n";
+  for (const char* task : {"task v like base { against half; layout any where clear side of source; "
+                           "source sided; target tray; distractors blue }",
+                           "variant v of half { refer source as side }",
+                           "variant v of lost { refer source as side }"}) {
+    const std::string said = test::analyze_with_suite(half + task)->said();
+    CHECK_MESSAGE(said.find("error[P0201]: unknown scene `nowhere`") != std::string::npos, said);
+  }
+}
+
 TEST_CASE(
     "a relation that need not hold, or is to one object twice, or compares with nobody, is "
     "refused") {
