@@ -3,6 +3,7 @@
 
 #include "compiler/define/expr.h"
 #include "compiler/define/role.h"
+#include "compiler/define/thing.h"
 
 namespace probe::sema {
 namespace {
@@ -61,6 +62,9 @@ bool ExprReader::only_parts(SetRef ref) {
   switch (set.op) {
     case SetOp::kParts:
       return true;
+    case SetOp::kNames:
+      return std::ranges::all_of(set.bodies,
+                                 [&](ExprRef body) { return node(body).type.is_part; });
     case SetOp::kUnion:
       return only_parts(set.left) && only_parts(set.right);
     case SetOp::kIntersection:
@@ -72,6 +76,13 @@ bool ExprReader::only_parts(SetRef ref) {
   }
 }
 
+// `carrot` or `cabinet.top_drawer`.
+ExprRef ExprReader::read_thing(const syntax::Name& name) {
+  const auto of = halves_of(name);
+  return of ? read_node(name.span, syntax::ExprPath{of->first, of->second})
+            : read_node(name.span, syntax::ExprName{name});
+}
+
 std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
   if (id.value == syntax::SetExprId::kNone) return std::nullopt;
   const syntax::SetExpr& written = file_[id];
@@ -81,13 +92,13 @@ std::optional<SetRef> ExprReader::read_set(syntax::SetExprId id) {
     set.op = SetOp::kNames;
     for (const syntax::Name& name : names->names) {
       const ExprRef body =
-          expect(read_node(name.span, syntax::ExprName{name}), TypeKind::kBody, "a body");
+          expect(read_thing(name), TypeKind::kBody, "a body");
       if (is_poison(body)) return std::nullopt;
       set.bodies.push_back(body);
     }
   } else if (const auto* whole = std::get_if<syntax::SetWhole>(&written.node)) {
     set.op = SetOp::kWhole;
-    const ExprRef thing = read_node(whole->name.span, syntax::ExprName{whole->name});
+    const ExprRef thing = read_thing(whole->name);
     if (is_poison(thing)) return std::nullopt;
     const Type& type = node(thing).type;
     if (type.kind != TypeKind::kBody && type.kind != TypeKind::kRegion) {

@@ -105,6 +105,7 @@ class ExprReader {
   // Whether some task has parts in it.
   bool may_have_parts(SetRef ref);
 
+  ExprRef read_thing(const syntax::Name& name);
   std::optional<SetRef> read_set(syntax::SetExprId id);
 
   Context& context_;

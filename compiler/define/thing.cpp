@@ -25,6 +25,16 @@ std::optional<std::pair<std::string_view, std::string_view>> halves(std::string_
   return std::pair(trimmed(name.substr(0, dot)), trimmed(name.substr(dot + 1)));
 }
 
+// The first `part.size()` bytes of a name, or the last.
+syntax::Name begin_of(const syntax::Name& name, std::string_view part) {
+  const auto size = static_cast<std::uint32_t>(part.size());
+  return {{name.span.file, name.span.begin, name.span.begin + size}, part};
+}
+syntax::Name end_of(const syntax::Name& name, std::string_view part) {
+  const auto size = static_cast<std::uint32_t>(part.size());
+  return {{name.span.file, name.span.end - size, name.span.end}, part};
+}
+
 ObjectId thing_of(const Fixture& fixture, std::string_view name) {
   for (const Fixture::Part& part : fixture.parts) {
     if (part.declared && part.name == name) return part.thing;
@@ -98,6 +108,12 @@ std::optional<ObjectId> peek_thing(const Context& context, std::string_view name
   return found == ObjectId::kNone ? std::nullopt : std::optional(found);
 }
 
+std::optional<std::pair<syntax::Name, syntax::Name>> halves_of(const syntax::Name& name) {
+  const auto parts = halves(name.text);
+  if (!parts) return std::nullopt;
+  return std::pair(begin_of(name, parts->first), end_of(name, parts->second));
+}
+
 std::optional<ObjectId> find_thing(Context& context, const syntax::Name& name) {
   if (const auto found = peek_thing(context, name.text)) return found;
   const auto parts = halves(name.text);
@@ -105,11 +121,8 @@ std::optional<ObjectId> find_thing(Context& context, const syntax::Name& name) {
     (void)context.symbols.objects.find(name, context.diagnostics);
     return std::nullopt;
   }
-  const auto index = context.symbols.fixtures.find(
-      {{name.span.file, name.span.begin,
-        name.span.begin + static_cast<std::uint32_t>(parts->first.size())},
-       parts->first},
-      context.diagnostics);
+  const auto index =
+      context.symbols.fixtures.find(begin_of(name, parts->first), context.diagnostics);
   if (!index) return std::nullopt;
   const Fixture& fixture = context.model.fixtures[static_cast<FixtureId>(*index)];
   if (fixture.broken) return std::nullopt;
@@ -118,12 +131,9 @@ std::optional<ObjectId> find_thing(Context& context, const syntax::Name& name) {
     if (part.declared) known.push_back(part.name);
   }
   for (const Fixture::OwnRegion& own : fixture.regions) known.push_back(own.region.name);
-  const std::uint32_t end = name.span.end;
   Diagnostic& said =
       report_unknown(context.diagnostics, "part or region of `" + fixture.name + "`",
-                     {{name.span.file, end - static_cast<std::uint32_t>(parts->second.size()), end},
-                      parts->second},
-                     known);
+                     end_of(name, parts->second), known);
   said.label(fixture.span, "the fixture");
   const bool is_joint = std::ranges::any_of(
       fixture.joints, [&](const Fixture::Joint& joint) { return joint.name == parts->second; });

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/names/context.h"
@@ -15,6 +16,9 @@ namespace probe::sema {
 std::optional<ObjectId> peek_thing(const Context& context, std::string_view name);
 // The same; P0201 with what there is.
 std::optional<ObjectId> find_thing(Context& context, const syntax::Name& name);
+
+// The two names of `cabinet.top_drawer`; nothing for one without a dot.
+std::optional<std::pair<syntax::Name, syntax::Name>> halves_of(const syntax::Name& name);
 
 // Rows for the declared parts and the regions of all fixtures.
 void define_things(Context& context);

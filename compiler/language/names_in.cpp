@@ -410,7 +410,7 @@ class Walker {
     while (member < written.text.size() && is_blank(written.text[member])) ++member;
     const std::string_view who = written.text.substr(0, owner);
     const auto begin = written.span.begin;
-    name({{written.span.file, begin, begin + static_cast<std::uint32_t>(owner)}, who}, kBodies);
+    name({{written.span.file, begin, begin + static_cast<std::uint32_t>(owner)}, who}, kBodies | kinds);
     name({{written.span.file, begin + static_cast<std::uint32_t>(member), written.span.end},
           written.text.substr(member)},
          Kind::kMember, who);
@@ -500,11 +500,9 @@ class Walker {
     if (id.value == SetExprId::kNone) return;
     std::visit([this](const auto& node) { read(node); }, file_[id].node);
   }
-  void read(const SetNames& node) {
-    for (const Name& one : node.names) name(one, kBodies | Kind::kVariable);
-  }
+  void read(const SetNames& node) { names(node.names, kBodies | Kind::kVariable); }
   void read(const SetName& node) { name(node.name, Kind::kRole | Kind::kVariable); }
-  void read(const SetWhole& node) { name(node.name, kBodies | Kind::kVariable); }
+  void read(const SetWhole& node) { thing(node.name, kBodies | Kind::kVariable); }
   void read(const SetBinary& node) { set(node.left), set(node.right); }
 
   void tasks(TaskSetId id) {

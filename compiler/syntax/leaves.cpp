@@ -35,12 +35,11 @@ std::vector<Name> Parser::names() {
 }
 
 std::vector<Name> Parser::braced_names() {
-  expect(TokenKind::kLeftBrace);
-  skip_newlines();
-  std::vector<Name> out = names();
-  skip_newlines();
-  expect(TokenKind::kRightBrace);
-  return out;
+  return braced([this] { return name(); });
+}
+
+std::vector<Name> Parser::braced_things() {
+  return braced([this] { return thing(); });
 }
 
 Path Parser::path() {

@@ -45,13 +45,13 @@ SetExprId Parser::set_operand() {
   }
   if (at(TokenKind::kLeftBrace)) {
     set_role(TokenRole::kTightBrace);
-    SetNames out{braced_names()};
+    SetNames out{braced_things()};
     return add(SetExpr{since(begin), std::move(out)}, {});
   }
   // A role may be called so; then no name follows.
   if (at_word("whole") && is_name(text_ahead(1))) {
     advance();
-    return add(SetExpr{since(begin), SetWhole{name()}}, {});
+    return add(SetExpr{since(begin), SetWhole{thing()}}, {});
   }
   const Name only = name();
   return add(SetExpr{since(begin), SetName{only}}, {});

@@ -104,6 +104,7 @@ class Parser {
   std::vector<Name> names();
   Name thing();  // an object, or `fixture.part`, as one name
   std::vector<Name> braced_names();
+  std::vector<Name> braced_things();
   Path path();
   Quantity quantity();
   Int integer();
@@ -123,6 +124,16 @@ class Parser {
     do {
       out.push_back(item());
     } while (accept(TokenKind::kComma));
+    return out;
+  }
+
+  template <typename Item>
+  auto braced(Item item) {
+    expect(TokenKind::kLeftBrace);
+    skip_newlines();
+    auto out = comma_list(item);
+    skip_newlines();
+    expect(TokenKind::kRightBrace);
     return out;
   }
 

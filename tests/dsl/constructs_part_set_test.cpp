@@ -89,3 +89,33 @@ TEST_CASE("derive: a task's own distractors are parts, too") {
   CHECK(a->task("open_two_not_drawer").prompt == "open the near drawer and the far drawer, not the third drawer");
   CHECK(a->task("open_two_not_red").prompt == "open the near drawer and the far drawer, not the red block");
 }
+
+TEST_CASE("set1, thing_set: parts of fixtures that are named, or left out by name") {
+  const Built built(kDrawers + R"(
+task by_role like open_two { set success = at end (all d in drawers: is_open(d)) }
+task named like open_two { set success = at end (all p in {near.drawer, other.drawer}: is_open(p)) }
+task spaced like open_two { set success = at end (all p in { near . drawer,
+  other.drawer }: is_open(p)) }
+task left_out like open_two {
+  set success = at end (all p in parts - {third.drawer} - whole near.door: is_open(p))
+}
+)");
+  const auto judge = built.task("by_role").judge_id;
+  CHECK(built.task("named").judge_id == judge);
+  CHECK(built.task("spaced").judge_id == judge);
+  CHECK(built.task("left_out").judge_id != judge);
+}
+
+TEST_CASE("set1: a part that there is not is named at its place, and a region is no body") {
+  const auto said = [](const std::string& set) {
+    const auto a = analyze_with_suite(kDrawers + "task t like open_two { set success = at end (all p in " +
+                                      set + ": is_open(p)) }\n");
+    const std::string text = a->said();
+    return text.substr(0, text.find('\n'));
+  };
+  CHECK(said("{near.drawr}") ==
+        "error[P0201]: unknown part, joint or region of `near` `drawr`");
+  CHECK(said("{naer.drawer}") == "error[P0201]: unknown name `naer`");
+  CHECK(said("{near.inside}") == "error[P0601]: expected a body, found a region");
+  CHECK(said("{near.drawer, red}") == "error[P0601]: expected a part, found a body");
+}

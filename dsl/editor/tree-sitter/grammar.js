@@ -312,6 +312,7 @@ module.exports = grammar({
     role: ($) => seq(field('role', $.identifier), choice('none', things($))),
     seen_on: ($) => seq(field('subject', $.identifier), field('preposition', $.identifier), field('object', $.identifier)),
     name_set: ($) => seq(alias($._set_begin, '{'), optional($._ends), names($), optional($._ends), '}'),
+    thing_set: ($) => seq(alias($._set_begin, '{'), optional($._ends), things($), optional($._ends), '}'),
     path: ($) => seq($.identifier, repeat(seq(on($, '.'), $.identifier))),
     thing: ($) => seq($.identifier, optional(seq(on($, '.'), field('part', $.identifier)))),
     _none_thing: ($) => alias('none', $.identifier),  // an object that is called so, where others follow
@@ -373,9 +374,9 @@ module.exports = grammar({
     // Sets of things.
     _set: ($) => choice($.binary_set, $._set_one),
     binary_set: ($) => chain($, $._set, choice('|', '&', '-'), $._set_one),
-    _set_one: ($) => choice($.name_set, $.parenthesized_set, $.whole, nameOr($, 'whole')),
+    _set_one: ($) => choice($.thing_set, $.parenthesized_set, $.whole, nameOr($, 'whole')),
     parenthesized_set: ($) => parens($._set),
-    whole: ($) => seq('whole', $.identifier),
+    whole: ($) => seq('whole', $.thing),
 
     // ---- tasks ----
     task_block: ($) => block($, $._task_statement),

@@ -81,6 +81,8 @@ TEST_CASE("signs and calls touch, operators do not") {
       "not(a)\nrobot r { fingers l opens + y }\n",
       "predicate p(a: object, s: length = 3mm) = all x in bodies - {a}: impulse(a, x) * -2 >= "
       "-1e-6Ns and not (a)\nrobot r { fingers l opens +y }\n");
+  check_becomes("predicate p()=all x in { c . top ,c.low }|whole c . door:q(x)\n",
+                "predicate p() = all x in {c.top, c.low} | whole c.door: q(x)\n");
   check_stays("set a = { b, c } | (variants of d - { e }) where not (axis language.action)\n");
 }
 
