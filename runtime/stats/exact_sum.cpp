@@ -42,6 +42,48 @@ Tilted tilted(std::span<const std::int64_t> values, double tilt) {
   return t;
 }
 
+// e^(i w), w = 2 pi j v / period: the angles of all terms are whole parts of a turn, so that each is
+// worked out once.
+class Turns {
+ public:
+  explicit Turns(std::int64_t period) : period_(period) {
+    if (period > kMost) return;
+    known_.reserve(static_cast<std::size_t>(period));
+    for (std::int64_t k = 0; k < period; ++k) known_.push_back(turn(k));
+  }
+  std::complex<double> at(std::int64_t j, std::int64_t v) const {
+    std::int64_t k = j * (v % period_) % period_;
+    if (k < 0) k += period_;
+    return known_.empty() ? turn(k) : known_[static_cast<std::size_t>(k)];
+  }
+
+ private:
+  static constexpr std::int64_t kMost = std::int64_t{1} << 20;  // 16 MiB
+
+  std::complex<double> turn(std::int64_t k) const {
+    return std::polar(
+        1.0, 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(period_));
+  }
+
+  std::int64_t period_;
+  std::vector<std::complex<double>> known_;
+};
+
+// As the standard's, without its care for what is not finite, which nothing is here.
+std::complex<double> times(std::complex<double> a, std::complex<double> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+double square(std::complex<double> a) { return a.real() * a.real() + a.imag() * a.imag(); }
+
+std::complex<double> times_power(std::complex<double> product, std::complex<double> base,
+                                 std::int64_t power) {
+  for (; power > 0; power >>= 1) {
+    if ((power & 1) != 0) product = times(product, base);
+    if (power > 1) base = times(base, base);
+  }
+  return product;
+}
+
 }  // namespace
 
 void ExactSum::add(std::span<const std::int64_t> values) {
@@ -62,45 +104,61 @@ ExactSum ExactSum::mirrored() const {
 
 double ExactSum::tail(std::int64_t observed) const {
   if (observed == 0) return 1;
+  const std::int64_t far = std::abs(observed);
+  const ExactSum other = mirrored();
+  // Flipped signs are their own mirror image.
+  if (other.times_ == times_) return std::min(1.0, 2 * at_least(far));
+  return std::min(1.0, at_least(far) + other.at_least(far));
+}
+
+double ExactSum::at_least(std::int64_t least) const {
+  return counting_work(least) <= kMostCounting ? at_least_by_counting(least)
+                                               : at_least_by_inversion(least);
+}
+
+std::int64_t ExactSum::highest() const {
+  std::int64_t sum = 0;
+  for (const auto& [values, times] : times_) sum += values.back() * times;
+  return sum;
+}
+
+double ExactSum::counting_work(std::int64_t least) const {
+  const double most = static_cast<double>(highest() - least) + 1;
+  if (most <= 0) return 0;
   double work = 0, width = 1;
   for (const auto& [values, times] : times_) {
     const double n = static_cast<double>(times);
     const double span = static_cast<double>(values.back() - values.front());
-    work += static_cast<double>(values.size()) * n * (width + span * n / 2);
+    const double mean = width + span * n / 2;
+    work += static_cast<double>(values.size()) * n * std::min(mean, most);
     width += span * n;
   }
-  const auto at_least = [&](const ExactSum& sum, std::int64_t least) {
-    return work <= kMostCounting ? sum.at_least_by_counting(least)
-                                 : sum.at_least_by_inversion(least);
-  };
-  const std::int64_t far = std::abs(observed);
-  const ExactSum other = mirrored();
-  // Flipped signs are their own mirror image.
-  if (other.times_ == times_) return std::min(1.0, 2 * at_least(*this, far));
-  return std::min(1.0, at_least(*this, far) + at_least(other, far));
+  return work;
 }
 
 double ExactSum::at_least_by_counting(std::int64_t least) const {
-  // chance[s - low]: of the sum s of the numbers so far.
-  std::int64_t low = 0;
+  const std::int64_t high = highest();
+  if (least > high) return 0;
+  // chance[d]: that the sum of the numbers so far lacks d of the highest it can be. What lacks more
+  // than high - least never comes back, so it is not counted.
+  const auto most = static_cast<std::size_t>(high - least) + 1;
   std::vector<double> chance = {1}, next;
   for (const auto& [values, times] : times_) {
     const double share = 1 / static_cast<double>(values.size());
-    const std::int64_t first = values.front();
+    const std::int64_t last = values.back();
     for (std::int64_t i = 0; i < times; ++i) {
-      next.assign(chance.size() + static_cast<std::size_t>(values.back() - first), 0.0);
+      const std::size_t width = chance.size() + static_cast<std::size_t>(last - values.front());
+      next.assign(std::min(width, most), 0.0);
       for (const std::int64_t v : values) {
-        double* const to = next.data() + (v - first);
-        for (std::size_t s = 0; s < chance.size(); ++s) to[s] += chance[s] * share;
+        const auto lack = static_cast<std::size_t>(last - v);
+        for (std::size_t d = 0; d < chance.size() && d + lack < next.size(); ++d)
+          next[d + lack] += chance[d] * share;
       }
-      low += first;
       chance.swap(next);
     }
   }
   double total = 0;
-  const auto size = static_cast<std::int64_t>(chance.size());
-  for (std::int64_t s = std::max<std::int64_t>(0, least - low); s < size; ++s)
-    total += chance[static_cast<std::size_t>(s)];
+  for (std::size_t d = chance.size(); d-- > 0;) total += chance[d];
   return std::min(1.0, total);
 }
 
@@ -133,51 +191,32 @@ double ExactSum::at_least_by_inversion(std::int64_t least) const {
   const double scale = std::exp(all.log_weight - tilt * target);
   if (scale == 0) return 0;
   const std::int64_t period = quiet_period(all.variance, static_cast<double>(span), tilt);
+  const Turns turns(period);
   struct Group {
-    std::vector<double> value, chance;
-    double times = 0;
-    // Of two values: |phi|^2 = squares + twice cos(w apart).
-    double apart = 0, squares = 0, twice = 0;
+    std::vector<std::int64_t> value;
+    std::vector<double> chance;
+    std::int64_t times = 0;
   };
   std::vector<Group> groups;
-  for (const auto& [values, times] : times_) {
-    Group group{{}, tilted(values, tilt).chance, static_cast<double>(times)};
-    for (const std::int64_t v : values) group.value.push_back(static_cast<double>(v));
-    if (values.size() == 2) {
-      const double p = group.chance[0], q = group.chance[1];
-      group.apart = group.value[1] - group.value[0];
-      group.squares = p * p + q * q;
-      group.twice = 2 * p * q;
-    }
-    groups.push_back(std::move(group));
-  }
-  // Most terms are nothing, which costs a cosine a group to see and not five functions.
-  const auto is_nothing = [&](double w) {
-    double size = 0;
-    for (const Group& group : groups) {
-      if (group.apart == 0) continue;
-      const double square = group.squares + group.twice * std::cos(w * group.apart);
-      size += 0.5 * group.times * std::log(std::max(square, 1e-300));
-      if (size < kNoSize - 1) return true;
-    }
-    return false;
-  };
+  for (const auto& [values, times] : times_)
+    groups.push_back({values, tilted(values, tilt).chance, times});
+  // Smaller than this a product of characteristic functions adds nothing; none grows again.
+  const double nothing = std::exp(2 * kNoSize);
   double total = 0;
   for (std::int64_t j = 0; 2 * j <= period; ++j) {
-    const double w = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(period);
-    if (is_nothing(w)) continue;
-    double size = 0, angle = -w * target;  // logarithm and argument of the term
+    std::complex<double> product = turns.at(-j, least);
     for (const Group& group : groups) {
-      std::complex<double> phi = 0;
-      for (std::size_t i = 0; i < group.value.size(); ++i)
-        phi += std::polar(group.chance[i], w * group.value[i]);
-      size += group.times * std::log(std::abs(phi));
-      if (size < kNoSize) break;
-      angle += group.times * std::arg(phi);
+      double real = 0, imaginary = 0;
+      for (std::size_t i = 0; i < group.value.size(); ++i) {
+        const std::complex<double> turn = turns.at(j, group.value[i]);
+        real += group.chance[i] * turn.real();
+        imaginary += group.chance[i] * turn.imag();
+      }
+      product = times_power(product, {real, imaginary}, group.times);
+      if (square(product) < nothing) break;
     }
-    if (size < kNoSize) continue;
-    const std::complex<double> term =
-        std::polar(std::exp(size), angle) / (1.0 - std::polar(std::exp(-tilt), -w));
+    if (square(product) < nothing) continue;
+    const std::complex<double> term = product / (1.0 - std::exp(-tilt) * turns.at(-j, 1));
     // The other half are the conjugates.
     total += (j == 0 || 2 * j == period ? 1 : 2) * term.real();
   }

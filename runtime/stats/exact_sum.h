@@ -20,7 +20,8 @@ class ExactSum {
   // small the chance (down to 1e-300, what is smaller is 0).
   double tail(std::int64_t observed) const;
 
-  // The two ways, for tail and its tests: the chance of a sum of at least `least`.
+  // The two ways, for tail and its tests: the chance of a sum of at least `least`. Counting goes down
+  // from the highest sum, so that a tail of few sums is little work whatever their number.
   double at_least_by_counting(std::int64_t least) const;
   // P(S >= s) = e^(K(t) - t s) (1/N) sum_j phi_t(w_j) e^(-i w_j s) / (1 - e^(-t - i w_j)), w_j = 2
   // pi j / N: Fourier's sum of the distribution tilted by e^(t S), which has its mean at s, so that
@@ -32,6 +33,9 @@ class ExactSum {
   using Values = std::vector<std::int64_t>;  // ascending
 
   ExactSum mirrored() const;
+  std::int64_t highest() const;
+  double at_least(std::int64_t least) const;
+  double counting_work(std::int64_t least) const;  // additions
 
   std::map<Values, std::int64_t> times_;  // how often each set of values was added
 };
