@@ -1,8 +1,10 @@
 // check_ci.mjs PACKAGES: examples/ci against what GitHub and GitLab take, and a manifest against Kubernetes' API.
 //   node check_ci.mjs NODE_MODULES ci
 //   node check_ci.mjs NODE_MODULES k8s JOB.yaml MERGE.yaml
-import { readFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
@@ -28,8 +30,20 @@ if (what === "ci") {
   const fits = ajv.compile(schema);
   const jobs = parse(readFileSync(join(root, "examples/ci/gitlab-ci.yml"), "utf8"));
   if (!fits(jobs)) mistakes.push(`gitlab-ci.yml: ${ajv.errorsText(fits.errors)}`);
-  for (const name of ["check", "probe", "gate"]) if (!jobs.stages.includes(jobs[name]?.stage)) mistakes.push(`gitlab-ci.yml: \`${name}\` is in no stage`);
+  for (const name of ["check", "probe", "gate", "keep"]) if (!jobs.stages.includes(jobs[name]?.stage)) mistakes.push(`gitlab-ci.yml: \`${name}\` is in no stage`);
   if (fits({ ...jobs, probe: { ...jobs.probe, parallel: "many" } })) mistakes.push("a number that is none passed GitLab's schema");
+
+  // Where nothing is there to hold a change against, the job fails: its own words, run in an empty folder.
+  const empty = mkdtempSync(join(tmpdir(), "ci-"));
+  const gateOf = (lines) => lines.filter((line) => !/^vlaprobe /.test(line)).join("\n");
+  for (const [name, script] of [["gitlab-ci.yml", gateOf(jobs.gate.script)],
+    ["github-actions.yml", Object.values(parse(text).jobs).flatMap((job) => job.steps).find((step) => /== ''$/.test(step.if ?? ""))?.run ?? ""]]) {
+    const said = spawnSync("bash", ["-e", "-c", script], { cwd: empty, encoding: "utf8", env: { ...process.env, CI_DEFAULT_BRANCH: "main" } });
+    if (said.status !== 1 || !/nothing was gated/.test(said.stdout + said.stderr)) mistakes.push(`${name}: a gate without anything to compare passes: ${said.status} ${said.stdout}${said.stderr}`);
+  }
+  // Caches of protected and of other branches are two, unless they are told not to be.
+  for (const name of ["gate", "keep"]) if (jobs[name]?.cache?.unprotect !== true) mistakes.push(`gitlab-ci.yml: the cache of \`${name}\` is another one on protected branches`);
+  if (jobs.gate.cache.policy !== "pull") mistakes.push("gitlab-ci.yml: a change overwrites what it is held against");
 
   // Every call of vlaprobe, for whoever runs them.
   const steps = Object.values(parse(text).jobs).flatMap((job) => job.steps.map((step) => step.run ?? ""));
