@@ -92,8 +92,14 @@ Called::Found Called::find(const std::vector<std::string>& words) const {
     Found& found = whole.of.empty() ? noun : whole;
     if (found.of.empty()) continue;
     found.is_plural = std::none_of(things_.begin(), things_.end(), [&](const Thing& thing) {
-      return found.of.contains(thing.id) && std::find(thing.nouns.begin(), thing.nouns.end(),
-                                                      words[length - 1]) != thing.nouns.end();
+      if (!found.of.contains(thing.id)) return false;
+      // "Butter at the back" ends with no noun of its own.
+      const bool is_called_so =
+          std::any_of(thing.names.begin(), thing.names.end(), [&](const auto& name) {
+            return name.size() == length && name.back() == words[length - 1];
+          });
+      return is_called_so || std::find(thing.nouns.begin(), thing.nouns.end(),
+                                       words[length - 1]) != thing.nouns.end();
     });
     return found;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -25,13 +26,27 @@ class ClauseGoal {
         continue;
       }
       if (clause.does == Does::kPuts && clause.goes) why = put_lack(clause);
-      if (!why && (clause.does == Does::kPuts || clause.does == Does::kTakes))
+      if (!why && (clause.does == Does::kPuts || clause.does == Does::kTakes)) {
         why = count_lack(clause);
-      if (!why && (clause.does == Does::kOpens || clause.does == Does::kCloses))
-        why = joint_lack(clause);
+        if (!why) why = quantity_lack(clause);
+        if (!why) why = from_lack(clause);
+        if (!why) why = ground_lack(clause);
+        if (!why) why = taken_lack(clause);
+      }
+      if (!why && (clause.does == Does::kOpens || clause.does == Does::kCloses)) {
+        why = quantity_lack(clause);
+        for (const Clause::What& what : clause.what) {
+          if (!why) why = joint_lack(clause, what);
+        }
+      }
+      if (!why && !clause.repeats.empty() && goal_.forgets)
+        why = "success is the same after once as after " + clause.repeats;
       if (why) return "says \"" + clause.words + "\" and " + *why;
     }
-    return std::nullopt;
+    for (const Rank& rank : clauses_.ranks) {
+      if (const auto why = rank_lack(rank)) return "says \"" + rank.words + "\" and " + *why;
+    }
+    return place_left_out();
   }
 
  private:
@@ -101,7 +116,8 @@ class ClauseGoal {
         return std::any_of(asked.of.begin(), asked.of.end(),
                            [&](const Things& things) { return things.contains(id); });
       };
-      if (has(thing) && has(place) && (least == nullptr || asked.of.size() < least->of.size()))
+      // Of as many the last one declared, which speaks of the others.
+      if (has(thing) && has(place) && (least == nullptr || asked.of.size() <= least->of.size()))
         least = &asked;
     }
     const std::string both = " of " + name(thing) + " and " + name(place);
@@ -111,6 +127,7 @@ class ClauseGoal {
 
   std::optional<std::string> put_lack(const Clause& clause) const {
     if (goal_.asks_of_all) return std::nullopt;
+    if (auto why = between_lack(clause)) return why;
     for (const Clause::What& what : clause.what) {
       std::vector<ObjectId> moved;
       for (const ObjectId id : what.of) {
@@ -138,6 +155,8 @@ class ClauseGoal {
     }
     if (is_measured) {
       if (auto why = height_lack(moved, clause)) return why;
+      if (auto why = beside_lack(moved, clause, all)) return why;
+      if (auto why = anywhere_lack(moved, clause)) return why;
       // Not there is all that it wants.
       if (all.near || !all.apart || (all.other && all.asked) || moved.size() != 1 ||
           clause.where.empty())
@@ -156,7 +175,280 @@ class ClauseGoal {
           [&](ObjectId said) { return is_same_place(said, place) || lies_on(said, place); });
       if (!may_be_there) return "success " + asks(thing, place);
     }
+    // Nothing that it is measured against, nor by what has a side: the place is in no way asked for.
+    const bool is_placed = goal_.tells_sides || goal_.speaks_of_all || goal_.asks_of_all ||
+                           is_measured_beside({thing}) || !measured_against(thing).empty() ||
+                           clause.what.size() != 1 || !clauses_.is_whole ||
+                           clauses_.all.size() != 1;
+    if (is_placed || task_.things().size() > 0) return std::nullopt;
+    return "success measures " + name(thing) + " against nothing";
+  }
+
+  bool is_measured_beside(const Things& things) const {
+    const auto& beside = goal_.measured_beside;
+    return std::any_of(beside.begin(), beside.end(), [&](const auto& two) {
+      return things.contains(two.first) || things.contains(two.second);
+    });
+  }
+
+  // What of a clause is handled: not the place it goes to.
+  static std::vector<ObjectId> handled(const Clause& clause, const Clause::What& what) {
+    std::vector<ObjectId> found;
+    for (const ObjectId id : what.of) {
+      if (!clause.where.contains(id)) found.push_back(id);
+    }
+    return found;
+  }
+
+  // "next to the plate" of which success wants it to be on the plate; "on the plate" of which it is
+  // to be apart from it.
+  std::optional<std::string> beside_lack(const std::vector<ObjectId>& moved, const Clause& clause,
+                                         const Goal::Bearing& all) const {
+    if (moved.size() != 1 || clause.where.size() != 1 || !all.near || !all.asked)
+      return std::nullopt;
+    const ObjectId thing = moved.front(), place = *clause.where.begin();
+    if (clause.lies == Clause::Where::kBeside && !all.apart &&
+        goal_.above.contains({thing, place}) && !goal_.above.contains({place, thing}))
+      return "success wants " + name(thing) + " to be higher than " + name(place);
+    if (clause.lies != Clause::Where::kOn) return std::nullopt;
+    for (const Goal::Asked& asked : goal_.asked) {
+      const Predicate& relation = model_.predicates[asked.predicate];
+      if (!relation.is_relation || asked.of.size() < 2 || goal_.above.contains({thing, place}))
+        continue;
+      const bool is_of_both = (asked.of[0] == Things{thing} && asked.of[1] == Things{place}) ||
+                              (asked.of[0] == Things{place} && asked.of[1] == Things{thing});
+      if (is_of_both && !relation.words.empty())
+        return "success asks `" + relation.name + "`, which is said by \"" + relation.words.front() +
+               "\"";
+    }
     return std::nullopt;
+  }
+
+  // "into a drawer" of which success wants a certain one.
+  std::optional<std::string> anywhere_lack(const std::vector<ObjectId>& moved,
+                                           const Clause& clause) const {
+    if (!clause.is_anywhere || moved.size() != 1) return std::nullopt;
+    Things wanted, free;
+    for (const ObjectId place : clause.where) {
+      const auto one = bearing(moved[0], place);
+      (one && one->asked ? wanted : free).insert(place);
+    }
+    // A part and its region are one place.
+    for (const ObjectId place : wanted)
+      std::erase_if(free, [&](ObjectId other) { return is_same_place(place, other); });
+    if (wanted.empty() || free.empty()) return std::nullopt;
+    const ObjectId other = *wanted.begin();
+    const bool is_one = std::all_of(wanted.begin(), wanted.end(),
+                                    [&](ObjectId id) { return is_same_place(id, other); });
+    if (!is_one) return std::nullopt;
+    return "success " + asks(moved[0], other) + " alone";
+  }
+
+  // "take the cube off the tray" of which success is that it is there, and no later clause puts it
+  // back.
+  std::optional<std::string> from_lack(const Clause& clause) const {
+    if (clause.goes || clause.from.size() != 1 || clause.what.size() != 1) return std::nullopt;
+    const auto moved = handled(clause, clause.what[0]);
+    if (moved.size() != 1 || !task_.is_object(moved[0]) || is_moved_later(clause, moved[0]))
+      return std::nullopt;
+    const auto one = bearing(moved[0], *clause.from.begin());
+    if (!one || !one->near || !one->asked || one->apart) return std::nullopt;
+    return "success wants " + name(moved[0]) + " to be there";
+  }
+
+  // Whether a later clause may do something with it.
+  bool is_moved_later(const Clause& clause, ObjectId thing) const {
+    if (!clauses_.is_whole) return true;
+    const Clause* end = clauses_.all.data() + clauses_.all.size();
+    return std::any_of(&clause + 1, end, [&](const Clause& later) {
+      return !later.certain || later.what.empty() ||
+             std::any_of(later.what.begin(), later.what.end(),
+                         [&](const Clause::What& what) { return what.of.contains(thing); });
+    });
+  }
+
+  // The one object that success wants above another and near it; none where it is not one.
+  std::optional<ObjectId> lies_upon(ObjectId thing) const {
+    std::optional<ObjectId> found;
+    for (const auto& [high, low] : goal_.above) {
+      if (high != thing || !task_.is_object(low)) continue;
+      const auto one = bearing(thing, low);
+      if (!one || !one->near || !one->asked || one->apart) continue;
+      if (found) return std::nullopt;
+      found = low;
+    }
+    return found;
+  }
+
+  // "put the cube on the table" of which success wants it to lie on the tray.
+  std::optional<std::string> ground_lack(const Clause& clause) const {
+    if (clause.ground.empty() || clause.does != Does::kPuts || !clause.where.empty() ||
+        clause.what.size() != 1)
+      return std::nullopt;
+    const auto moved = handled(clause, clause.what[0]);
+    if (moved.size() != 1 || is_moved_later(clause, moved[0])) return std::nullopt;
+    const auto low = lies_upon(moved[0]);
+    if (!low || clauses_.said.contains(*low)) return std::nullopt;
+    return "success " + asks(moved[0], *low);
+  }
+
+  // "put the cube on the tray, then pick it up again" of which success is that it lies there at the
+  // end.
+  std::optional<std::string> taken_lack(const Clause& clause) const {
+    if (clause.does != Does::kTakes || clause.what.size() != 1 || !goal_.forgets)
+      return std::nullopt;
+    for (const Clause* put = clauses_.all.data(); put != &clause; ++put) {
+      if (!put->certain || put->does != Does::kPuts || !put->goes || put->where.size() != 1 ||
+          put->what.size() != 1)
+        continue;
+      const auto moved = handled(*put, put->what[0]);
+      const auto taken = handled(*put, clause.what[0]);
+      if (moved.size() != 1 || taken != moved || is_moved_later(clause, moved[0])) continue;
+      const auto one = bearing(moved[0], *put->where.begin());
+      if (one && one->near && one->asked && !one->apart && lies_upon(moved[0]))
+        return "success wants " + name(moved[0]) + " to lie there at the end";
+    }
+    return std::nullopt;
+  }
+
+  // "the cube last" of which success wants the cube first.
+  std::optional<std::string> rank_lack(const Rank& rank) const {
+    if (rank.of.size() != 1) return std::nullopt;
+    const ObjectId thing = *rank.of.begin();
+    for (const auto& [first, second] : goal_.order) {
+      const Things& wrong = rank.is_last ? first : second;
+      const Things& right = rank.is_last ? second : first;
+      if (!wrong.contains(thing) || right.contains(thing) || right.empty()) continue;
+      return "succeeds when " + name(*first.begin()) + " comes before " + name(*second.begin());
+    }
+    return std::nullopt;
+  }
+
+  // "pick up the cube" and no more, of which success wants it to lie on the tray.
+  std::optional<std::string> place_left_out() const {
+    if (!clauses_.is_whole || clauses_.all.empty()) return std::nullopt;
+    const bool takes_alone =
+        std::all_of(clauses_.all.begin(), clauses_.all.end(), [](const Clause& clause) {
+          return clause.does == Does::kTakes && clause.certain && !clause.denied &&
+                 clause.where.empty() && clause.ground.empty() && clause.what.size() == 1 &&
+                 clause.what[0].of.size() == 1;
+        });
+    if (!takes_alone) return std::nullopt;
+    const Clause& last = clauses_.all.back();
+    const ObjectId thing = *last.what[0].of.begin();
+    const auto low = lies_upon(thing);
+    if (!low || clauses_.said.contains(*low)) return std::nullopt;
+    return "says \"" + last.words + "\" and no place, and success " + asks(thing, *low);
+  }
+
+  // How success asks the same of several of these: by what is asked, of whom.
+  using Alike = std::map<std::pair<PredicateId, std::vector<Things>>, Things>;
+  Alike asked_alike(const Things& things) const {
+    Alike alike;
+    for (const Goal::Asked& asked : goal_.asked) {
+      if (asked.of.empty() || asked.of[0].size() != 1) continue;
+      const ObjectId thing = *asked.of[0].begin();
+      if (things.contains(thing))
+        alike[{asked.predicate, {asked.of.begin() + 1, asked.of.end()}}].insert(thing);
+    }
+    return alike;
+  }
+  std::string names(const Things& things) const {
+    std::string text;
+    for (const ObjectId id : things) text += (text.empty() ? "" : " and ") + name(id);
+    return text;
+  }
+
+  // "open all drawers" of which success is that one is open; "one of the drawers" where it asks for
+  // all of them, or for a certain one; "the cube and the can" where either will do.
+  std::optional<std::string> quantity_lack(const Clause& clause) const {
+    if (auto why = either_lack(clause)) return why;
+    const bool is_of_joints = clause.does == Does::kOpens || clause.does == Does::kCloses;
+    for (const Clause::What& what : clause.what) {
+      if (what.is_back || !(what.is_some || what.is_each || what.is_several)) continue;
+      Things of;
+      for (const ObjectId id : what.of) {
+        const bool is_one = is_of_joints ? this->of(id) && this->of(id)->is_part()
+                                         : task_.is_object(id) && !clause.where.contains(id);
+        if (is_one) of.insert(id);
+      }
+      if (of.size() < 2) continue;
+      if (auto why = of_several(what, of)) return why;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<std::string> of_several(const Clause::What& what, const Things& of) const {
+    // The predicate that is asked of most of them.
+    const Alike alike = asked_alike(of);
+    auto most = alike.begin();
+    for (auto one = alike.begin(); one != alike.end(); ++one) {
+      if (one->second.size() >= most->second.size()) most = one;
+    }
+    if (most == alike.end()) return std::nullopt;
+    const Things& asked = most->second;
+    const std::string so =
+        "success asks `" + model_.predicates[most->first.first].name + "` of ";
+    if (what.is_some) {
+      const bool is_counted = what.count > 0;
+      if (asked.size() == of.size())
+        return is_counted && what.count >= of.size()
+                   ? std::nullopt
+                   : std::optional(so + (of.size() == 2 ? "both" : "all " + count(of.size())));
+      if (is_counted ? asked.size() == what.count : asked.size() == 1)
+        return so + names(asked) + " alone, of " + count(of.size());
+      return std::nullopt;
+    }
+    Things missing;
+    std::set_difference(of.begin(), of.end(), asked.begin(), asked.end(),
+                        std::inserter(missing, missing.end()));
+    std::erase_if(missing, [&](ObjectId id) { return has_part_in_it(id); });
+    if (missing.empty()) return std::nullopt;
+    const bool is_all = what.is_each && what.count == 0;
+    const bool is_one = !what.is_each && what.count == 0 && asked.size() == 1 &&
+                        missing.size() + 1 == of.size();
+    const bool is_open = what.count > 0 && what.count < of.size() && asked.size() == what.count &&
+                         missing.size() + asked.size() == of.size();
+    if (is_open) return so + names(asked) + ", of " + count(of.size());
+    if (is_all || is_one) return so + names(asked) + " and not of " + name(*missing.begin());
+    return std::nullopt;
+  }
+  static std::string count(std::size_t number) { return std::to_string(number); }
+
+  // Whether success asks or measures something of it, in whatever part.
+  bool has_part_in_it(ObjectId id) const {
+    const bool is_asked = std::any_of(goal_.asked.begin(), goal_.asked.end(), [&](const auto& one) {
+      return std::any_of(one.of.begin(), one.of.end(),
+                         [&](const Things& of) { return of.contains(id); });
+    });
+    return is_asked || goal_.ways.contains(id) || goal_.asks_of_all;
+  }
+
+  std::optional<std::string> either_lack(const Clause& clause) const {
+    const auto says = [&](ObjectId id) {
+      return std::any_of(clause.what.begin(), clause.what.end(), [&](const Clause::What& what) {
+        return !what.is_some && !what.is_back && what.of == Things{id};
+      });
+    };
+    const auto says_each = [&](const Things& things) {
+      return things.size() > 1 && std::all_of(things.begin(), things.end(), says) &&
+             !is_each_asked(things);
+    };
+    for (const Things& two : goal_.either) {
+      if (says_each(two)) return "succeeds with one of the two (`or`, not `and`)";
+    }
+    for (const Things& some : goal_.one_of) {
+      if (says_each(some))
+        return "succeeds with one of " + count(some.size()) + " (`any`, not `all`)";
+    }
+    return std::nullopt;
+  }
+  bool is_each_asked(const Things& things) const {
+    return std::all_of(things.begin(), things.end(), [&](ObjectId thing) {
+      return std::any_of(goal_.asked.begin(), goal_.asked.end(), [&](const Goal::Asked& asked) {
+        return !asked.of.empty() && asked.of[0] == Things{thing};
+      });
+    });
   }
 
   // "do not put the cube on the tray" of which success is that it is there.
@@ -193,17 +485,33 @@ class ClauseGoal {
     return "success wants " + name(low) + " to be higher than " + name(high);
   }
 
+  // "put the cube between the can and the tray" of which success is that the can is between.
+  std::optional<std::string> between_lack(const Clause& clause) const {
+    if (clause.lies != Clause::Where::kBeside || clause.what.size() != 1 ||
+        clause.what[0].of.size() != 1 || clause.where.size() < 2)
+      return std::nullopt;
+    const Things& said = clause.what[0].of;
+    const Goal::Asked* turned = nullptr;
+    for (const Goal::Asked& asked : goal_.asked) {
+      const Predicate& relation = model_.predicates[asked.predicate];
+      if (!relation.is_relation || asked.of.size() != 3) continue;
+      if (asked.of[0] == said) return std::nullopt;
+      const bool is_in_it = asked.of[1] == said || asked.of[2] == said;
+      if (is_in_it && asked.of[0].size() == 1 && clause.where.contains(*asked.of[0].begin()))
+        turned = &asked;
+    }
+    if (turned == nullptr) return std::nullopt;
+    return "success asks `" + model_.predicates[turned->predicate].name + "` of " +
+           name(*turned->of[0].begin());
+  }
+
   // Success is about other things.
   std::optional<std::string> unspoken(const std::vector<ObjectId>& moved,
                                       const Clause& clause) const {
     if (goal_.spoken.empty() && goal_.ways.empty()) return std::nullopt;
     // Another metric may judge it; and what is not understood may say why it is not judged.
-    const auto& beside = goal_.measured_beside;
-    const bool is_judged_beside = std::any_of(beside.begin(), beside.end(), [&](const auto& two) {
-      return std::any_of(moved.begin(), moved.end(),
-                         [&](ObjectId id) { return two.first == id || two.second == id; });
-    });
-    if (is_judged_beside || !clauses_.is_whole) return std::nullopt;
+    if (is_measured_beside({moved.begin(), moved.end()}) || !clauses_.is_whole)
+      return std::nullopt;
     if (moved.size() == 1) return "success asks nothing of " + name(moved.front());
     const auto& spoken = goal_.spoken;
     const bool moves_none = std::none_of(spoken.begin(), spoken.end(),
@@ -219,6 +527,7 @@ class ClauseGoal {
   // Whether one begins on or in the other, seen from above: then it may be said for it.
   bool lies_on(ObjectId a, ObjectId b) const {
     if (task_.starts.empty()) return true;
+    if (!task_.is_object(a) && !task_.is_object(b)) return false;
     if (!task_.is_object(a) || !task_.is_object(b)) {
       // What is put into a fixture has a height of its own; in a table of starts all may have.
       if (!model_.layouts[task_.layout].given.empty()) return false;
@@ -264,20 +573,23 @@ class ClauseGoal {
   }
 
   // The parts of a clause that opens or closes.
+  Things parts_of(const Clause::What& what) const {
+    Things parts;
+    for (const ObjectId id : what.of) {
+      if (of(id) && of(id)->is_part()) parts.insert(id);
+    }
+    return parts;
+  }
   Things parts_of(const Clause& clause) const {
     Things parts;
-    for (const Clause::What& what : clause.what) {
-      for (const ObjectId id : what.of) {
-        if (of(id) && of(id)->is_part()) parts.insert(id);
-      }
-    }
+    for (const Clause::What& what : clause.what) parts.merge(parts_of(what));
     return parts;
   }
 
   // "open the drawer and close it" of which success asks that it is open, or nothing of it.
-  std::optional<std::string> joint_lack(const Clause& clause) const {
-    const Things parts = parts_of(clause);
-    if (clause.what.size() != 1 || parts.empty() || goal_.moves_unnamed) return std::nullopt;
+  std::optional<std::string> joint_lack(const Clause& clause, const Clause::What& what) const {
+    const Things parts = parts_of(what);
+    if (parts.empty() || goal_.moves_unnamed) return std::nullopt;
     // What is done last is what is left.
     for (const Clause* later = &clause + 1; later != clauses_.all.data() + clauses_.all.size();
          ++later) {

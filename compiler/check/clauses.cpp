@@ -33,6 +33,11 @@ enum class WordIs : std::uint8_t {
   kIt,
   kThe,
   kEach,
+  kSome,
+  kIs,
+  kBegins,
+  kTurn,
+  kRepeats,
   kPlace,
   kShut,
   kIdle,
@@ -131,18 +136,19 @@ class ClauseReader {
         stop();
         break;
       }
+      if (word.is == WordIs::kSpares && kept()) continue;
       if (word.is == WordIs::kSpares || word.is == WordIs::kDenies) {
         const bool is_inside = word.is == WordIs::kDenies && at_ > 0 && !is_apart(at_);
-        if (is_inside && !out_.all.empty()) out_.all.back().certain = false;
+        if (is_inside && !out_.all.empty()) doubt(out_.all.back(), at_);
         stop();
         break;
       }
       if (is_verb(word.is)) {
         clause(word);
-      } else if (joins(word.is) || word.is == WordIs::kIdle) {
+      } else if (joins(word.is) || word.is == WordIs::kIdle || word.is == WordIs::kTurn) {
         joined_ = joined_ || joins(word.is);
         at_ += word.length;
-      } else if (!leading_place() && !same_again()) {
+      } else if (!leading_place() && !same_again() && !turn() && !stated()) {
         unknown();
       }
       PROBE_CHECK(at_ > before, "a clause has words");
@@ -169,12 +175,12 @@ class ClauseReader {
     }
     return {};
   }
-  // "Do not put the cup ..".
+  // "Do not put the cup ..", "avoid putting it ..".
   bool denies_first(const Match& word) const {
-    if (word.is != WordIs::kDenies || !out_.all.empty() || !is_verb(match(at_ + word.length).is))
-      return false;
+    if (!out_.all.empty() || !is_verb(match(at_ + word.length).is)) return false;
     const std::string& text = words_[at_].text;
-    return text == "not" || text == "don't" || text == "never";
+    return text == "not" || text == "don't" || text == "never" || text == "avoid" ||
+           text == "refrain";
   }
   static bool is_verb(WordIs is) { return is >= WordIs::kPuts && is <= WordIs::kDoes; }
   static bool is_place(WordIs is) { return is >= WordIs::kTo && is <= WordIs::kWith; }
@@ -192,32 +198,51 @@ class ClauseReader {
     bool is_place = false;  // no thing
   };
 
-  // Nothing where the words at `at` are no noun that is known.
-  std::optional<Noun> noun(std::size_t at) {
-    Noun found;
-    std::size_t count = 0;
-    while (at < words_.size()) {
+  // What stands before a noun, and where that begins.
+  std::size_t before_noun(std::size_t at, Clause::What& how) const {
+    for (; at < words_.size() && !words_[at].is_slot;) {
+      const std::string& text = words_[at].text;
       const Match word = match(at);
       if (word.is == WordIs::kThe || word.is == WordIs::kEach) {
-        if (words_[at].text == "both") count = 2;
+        if (text == "both") how.count = 2;
+        how.is_each = how.is_each || word.is == WordIs::kEach;
+        // Of one noun; what is behind "one of" has an article of its own.
+        how.is_some = how.is_some || text == "a" || text == "an";
         at += word.length;
         continue;
       }
-      const std::size_t number = words_[at].is_slot ? 0 : number_of(words_[at].text);
+      // "One cube", not "put the other one".
+      const bool is_one = word.is == WordIs::kIt && text == "one" &&
+                          called_.find(texts(at + 1, 4)).length > 0;
+      if (word.is == WordIs::kSome || is_one) {
+        how.is_some = true;
+        at += word.length;
+        continue;
+      }
+      const std::size_t number = number_of(text);
       if (number == 0) break;
-      count = number;
+      how.count = number;
+      ++at;
       // "Two of the three": which, is not said.
-      if (at + 1 < words_.size() && words_[at + 1].text == "of" && words_[at].text != "both")
-        return std::nullopt;
+      if (text == "both" || at >= words_.size() || words_[at].text != "of") continue;
+      how.is_some = how.is_some || !how.is_each;
       ++at;
     }
+    return at;
+  }
+
+  // Nothing where the words at `at` are no noun that is known.
+  std::optional<Noun> noun(std::size_t at) {
+    Noun found;
+    Clause::What how;
+    at = before_noun(at, how);
     if (at >= words_.size()) return std::nullopt;
     if (words_[at].is_slot) {
       found.end = at + 1;
-      if (words_[at].is_set) {
+      if (words_[at].is_set && !how.is_some) {
         for (const ObjectId one : words_[at].of) found.what.push_back({{one}, 0, false});
       } else {
-        found.what.push_back({words_[at].of, 0, false});
+        found.what.push_back({words_[at].of, 0, false, false, false, how.is_some});
       }
       return found;
     }
@@ -229,7 +254,10 @@ class ClauseReader {
     }
     if (const Called::Found name = called_.find(texts(at, 5)); name.length > 0) {
       out_.is_pure = false;
-      found.what.push_back({name.of, name.is_plural ? count : 0, false});
+      how.of = name.of;
+      how.is_several = name.is_plural;
+      if (!name.is_plural) how.count = 0;
+      found.what.push_back(std::move(how));
       found.end = at + name.length;
       of_what(found);
       return found;
@@ -317,7 +345,29 @@ class ClauseReader {
       found->what.insert(found->what.end(), more->what.begin(), more->what.end());
       if (is_and) sure = found;
     }
+    // "One of the cube and the can".
+    if (sure->what.size() > 1 && sure->what.front().is_some && sure->what.front().of.size() == 1)
+      take_either(*sure);
     return sure;
+  }
+
+  static void take_either(Noun& nouns) {
+    Clause::What all;
+    all.is_some = true;
+    for (const Clause::What& one : nouns.what) all.of.insert(one.of.begin(), one.of.end());
+    nouns.what = {std::move(all)};
+  }
+
+  // "The cube or the can".
+  void or_another(Noun& found) {
+    const Match joint = match(found.end);
+    const std::size_t at = found.end + joint.length;
+    if (joint.is != WordIs::kOr || ends_at(found.end) || is_verb(match(at).is)) return;
+    const auto other = noun(at);
+    if (!other || other->is_place) return;
+    found.end = other->end;
+    found.what.insert(found.what.end(), other->what.begin(), other->what.end());
+    take_either(found);
   }
 
   // Whether nouns stand here, and a place behind them.
@@ -352,9 +402,17 @@ class ClauseReader {
     finish(std::move(clause), from);
   }
 
-  void idle() {
+  void idle(Clause& clause) {
     while (at_ < words_.size()) {
       const Match word = match(at_);
+      if (word.is == WordIs::kRepeats) clause.repeats = shown(at_, at_ + word.length);
+      if (word.is == WordIs::kTurn && !clause.what.empty())
+        turn_ = words_[at_].text == "last" ? Ordinal::kLast : Ordinal::kFirst;
+      if (word.is == WordIs::kRepeats || word.is == WordIs::kTurn) {
+        at_ += word.length;
+        if (ends_at(at_)) return;
+        continue;
+      }
       // "Drop it off on the plate".
       const bool is_particle = word.is == WordIs::kFrom && !noun(at_ + word.length);
       if (word.is != WordIs::kIdle && !is_particle) return;
@@ -365,10 +423,12 @@ class ClauseReader {
 
   // What stands behind the verb.
   void finish(Clause clause, std::size_t from) {
-    idle();
+    turn_ = Ordinal::kNone;
+    idle(clause);
     // A clause without a verb begins behind a sign.
     if (at_ == from || !ends_at(at_)) {
       if (auto what = nouns(at_, false); what && !what->is_place) {
+        or_another(*what);
         clause.what = what->what;
         at_ = what->end;
       }
@@ -378,7 +438,7 @@ class ClauseReader {
     pending_.clear();
     while (at_ < words_.size()) {
       if (ends_at(at_) && !is_place(match(at_).is)) break;
-      idle();
+      idle(clause);
       const Match word = match(at_);
       // "Pull the drawer open".
       const bool is_shut = word.is == WordIs::kShut || word.is == WordIs::kCloses;
@@ -395,7 +455,7 @@ class ClauseReader {
       }
       if (!is_place(word.is)) break;
       if (!place(word, clause, where)) {
-        clause.certain = false;
+        doubt(clause, at_ + word.length);
         break;
       }
     }
@@ -407,13 +467,29 @@ class ClauseReader {
     joined_ = false;
     if (at_ < words_.size() && !ends_at(at_)) {
       const Match next = match(at_);
-      clause.certain = clause.certain && (joins(next.is) || next.is == WordIs::kSpares);
-      if (next.is == WordIs::kOr) clause.certain = false;
+      const bool is_known =
+          joins(next.is) || next.is == WordIs::kSpares || next.is == WordIs::kBegins;
+      if (!is_known || next.is == WordIs::kOr) doubt(clause, at_);
     }
-    for (std::size_t i = from; i < at_; ++i)
-      clause.words += (i > from ? " " : "") + words_[i].shown;
+    clause.words = shown(from, at_);
+    if (turn_ != Ordinal::kNone) {
+      for (const Clause::What& one : clause.what)
+        out_.ranks.push_back({one.of, turn_ == Ordinal::kLast, clause.words});
+    }
     last_ = clause.does;
     out_.all.push_back(std::move(clause));
+  }
+
+  std::string shown(std::size_t from, std::size_t to) const {
+    std::string text;
+    for (std::size_t i = from; i < to && i < words_.size(); ++i)
+      text += (i > from ? " " : "") + words_[i].shown;
+    return text;
+  }
+  // A clause is not understood, from this word on.
+  void doubt(Clause& clause, std::size_t at) const {
+    if (clause.certain && at < words_.size()) clause.stopped = words_[at].shown;
+    clause.certain = false;
   }
 
   // "On the plate". False where it is not known what that is.
@@ -423,6 +499,9 @@ class ClauseReader {
     if (!to) return inside(word, clause, where);
     at_ = to->end;
     for (const Clause::What& one : to->what) out_.said.insert(one.of.begin(), one.of.end());
+    if (word.is == WordIs::kFrom) {
+      for (const Clause::What& one : to->what) clause.from.insert(one.of.begin(), one.of.end());
+    }
     if (word.is == WordIs::kFrom || word.is == WordIs::kWith) return true;
     // "Pick up the cup on the plate": which cup. "Take it to the plate": where to.
     if (clause.does == Clause::Does::kTakes) {
@@ -431,12 +510,17 @@ class ClauseReader {
     }
     if (to->is_place) {
       unsure_ = true;
+      const std::string& place = words_[to->end - 1].text;
+      if (place != "there" && place != "here") clause.ground = place;
       return true;
     }
     const Clause::Where lies = lies_as(word, at);
     clause.lies = clause.goes && clause.lies != lies ? Clause::Where::kMixed : lies;
     clause.goes = true;
-    for (const Clause::What& one : to->what) where.insert(one.of.begin(), one.of.end());
+    for (const Clause::What& one : to->what) {
+      where.insert(one.of.begin(), one.of.end());
+      clause.is_anywhere = clause.is_anywhere || one.is_some;
+    }
     return true;
   }
 
@@ -485,25 +569,89 @@ class ClauseReader {
     return true;
   }
 
+  // "Leave it open", "keep the drawer closed": as if that were done last.
+  bool kept() {
+    const std::string& text = words_[at_].text;
+    if (text != "leave" && text != "keep") return false;
+    const auto what = noun(at_ + 1);
+    if (!what || what->is_place || ends_at(what->end)) return false;
+    const WordIs is = match(what->end).is;
+    if (is != WordIs::kOpens && is != WordIs::kShut) return false;
+    if (is == WordIs::kOpens && words_[what->end].text != "open") return false;
+    const std::size_t from = at_;
+    Clause clause;
+    clause.does = is == WordIs::kOpens ? Clause::Does::kOpens : Clause::Does::kCloses;
+    clause.what = what->what;
+    at_ = what->end + 1;
+    finish(std::move(clause), from);
+    return true;
+  }
+
+  // "The cube last", "beginning with the cube".
+  bool turn() {
+    const Match word = match(at_);
+    const bool begins = word.is == WordIs::kBegins;
+    const auto what = noun(begins ? at_ + word.length : at_);
+    if (!what || what->is_place) return false;
+    std::size_t end = what->end;
+    const bool is_last = match(end).is == WordIs::kTurn && words_[end].text == "last";
+    if (!begins) {
+      if (match(end).is != WordIs::kTurn || ends_at(end)) return false;
+      end += match(end).length;
+    }
+    if (end < words_.size() && !ends_at(end) && !joins(match(end).is)) return false;
+    for (const Clause::What& one : what->what) {
+      out_.ranks.push_back({one.of, !begins && is_last, shown(at_, end)});
+      out_.said.insert(one.of.begin(), one.of.end());
+    }
+    at_ = end;
+    return true;
+  }
+
+  // "The cube should be on the tray", and "the cube on the tray" as all that is said.
+  bool stated() {
+    const auto what = noun(at_);
+    if (!what || what->is_place || ends_at(what->end)) return false;
+    const Match is = match(what->end);
+    const bool is_all = at_ == 0 && is_place(is.is) && is.is != WordIs::kFrom &&
+                        is.is != WordIs::kWith;
+    if (is.is != WordIs::kIs && !is_all) return false;
+    const std::size_t from = at_;
+    Clause clause;
+    clause.does = Clause::Does::kPuts;
+    clause.what = what->what;
+    at_ = what->end;
+    while (match(at_).is == WordIs::kIs) at_ += match(at_).length;
+    if (!is_place(match(at_).is)) {
+      at_ = from;
+      return false;
+    }
+    finish(std::move(clause), from);
+    return true;
+  }
+
   // What is not understood speaks of what is named in it, and may belong to what stands before it.
   void unknown() {
     out_.is_whole = false;
-    if (!out_.all.empty() && !is_apart(at_)) out_.all.back().certain = false;
+    if (!out_.all.empty() && !is_apart(at_)) doubt(out_.all.back(), at_);
     constexpr auto kBack =
         std::to_array<std::string_view>({"which", "that", "who", "where", "when", "while", "so"});
     if (!out_.all.empty() && std::find(kBack.begin(), kBack.end(), words_[at_].text) != kBack.end())
-      out_.all.back().certain = false;
+      doubt(out_.all.back(), at_);
+    const std::size_t from = at_;
     do {
       speak(at_);
       ++at_;
     } while (at_ < words_.size() && !ends_at(at_) && !joins(match(at_).is) &&
              match(at_).is != WordIs::kSpares && match(at_).is != WordIs::kDenies);
+    out_.left.push_back(shown(from, at_));
     joined_ = true;
     last_ = Clause::Does::kOther;
   }
 
   void stop() {
     out_.is_whole = false;
+    if (at_ < words_.size()) out_.left.push_back(shown(at_, words_.size()));
     for (; at_ < words_.size(); ++at_) speak(at_);
   }
 
@@ -524,6 +672,7 @@ class ClauseReader {
   Things pending_;       // where the next clause goes, said before it
   bool unsure_ = false;  // a place that is no thing was said of the clause that is read
   bool joined_ = false;  // the words before are no part of a clause
+  enum class Ordinal : std::uint8_t { kNone, kFirst, kLast } turn_ = Ordinal::kNone;
   Clause::Does last_ = Clause::Does::kOther;
 };
 

@@ -20,8 +20,11 @@ struct Clause {
   // "it", of a noun of several, of a noun in the plural.
   struct What {
     Things of;
-    std::size_t count = 0;  // "both cubes", "three cubes"; 0 where nothing counts
-    bool is_back = false;   // "it": something that was spoken of
+    std::size_t count = 0;    // "both cubes", "three cubes"; 0 where nothing counts
+    bool is_back = false;     // "it": something that was spoken of
+    bool is_several = false;  // a noun in the plural
+    bool is_each = false;     // "all drawers", "every drawer"
+    bool is_some = false;     // "one of the drawers", "a drawer", "A or B": it is not said which
   };
   std::vector<What> what;
   Things where;         // where it goes, by all that the words may mean
@@ -30,13 +33,27 @@ struct Clause {
   enum class Where : std::uint8_t { kElsewhere, kOn, kUnder, kBeside, kMixed } lies =
       Where::kElsewhere;
   bool goes = false;    // it is said where to, in words that are known
+  bool is_anywhere = false;  // "in a drawer", "on either of the plates"
+  Things from;          // "take the cup off the plate"
+  std::string ground;   // "on the table": the word, of what is no thing
+  std::string repeats;  // "twice"
   bool certain = true;  // all of its words were understood
+  std::string stopped;  // where not: the word that was not
   bool denied = false;  // "do not put ..": the first of an instruction, and alone
   std::string words;    // "put the red block on the tray"
 };
 
+// "the red block first", "the red block last", beside clauses or of one.
+struct Rank {
+  Things of;
+  bool is_last = false;
+  std::string words;
+};
+
 struct Clauses {
   std::vector<Clause> all;
+  std::vector<Rank> ranks;
+  std::vector<std::string> left;  // words outside of clauses
   bool is_whole = true;  // no word of the instruction is outside of them
   Things said;           // all that is spoken of
   // Its words but for slots are those of the tables: it means the same of whatever fills the roles.

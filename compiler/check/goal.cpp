@@ -12,11 +12,15 @@ class Reader : GoalThings {
  public:
   Reader(const Model& model, const Task& task, Goal& goal) : GoalThings(model, task), goal_(goal) {}
 
+  // What a metric speaks of at all.
+  void speak(const Metric& metric) { measure(metric.expr, Given(metric.variables)); }
+
   void read(const Metric& metric) {
     const Given given(metric.variables);
     measure(metric.expr, given);
     look_for_sides(metric.expr, std::vector<bool>(metric.variables));
     ask(metric.expr, given);
+    goal_.forgets = metric.readout == plan::Readout::kAtEnd && !remembers_;
     if (metric.readout == plan::Readout::kOnce) order_within(metric.expr, given);
     order(metric.expr, given);
   }
@@ -118,6 +122,11 @@ class Reader : GoalThings {
     if (ref == kNoExpr) return;
     const ExprNode& node = at(ref);
     switch (node.op) {
+      case ExprOp::kOnce:
+      case ExprOp::kAlways:
+      case ExprOp::kHold:
+        remembers_ = true;
+        break;
       case ExprOp::kRole:
       case ExprOp::kObject:
       case ExprOp::kPart:
@@ -129,6 +138,7 @@ class Reader : GoalThings {
         goal_.tells_sides = true;
         break;
       case ExprOp::kMeasure:
+        remembers_ = remembers_ || node.measure == Measure::kLatest;
         goal_.tells_sides = goal_.tells_sides || tells_sides(node.measure);
         if (node.args.size() > 1) compare(things(ref, given));
         break;
@@ -357,6 +367,7 @@ class Reader : GoalThings {
   }
 
   Goal& goal_;
+  bool remembers_ = false;
   Calls measured_, asked_, ordered_;
   std::set<std::pair<PredicateId, std::vector<bool>>> sided_;  // looked at for sides
 };
@@ -377,6 +388,13 @@ Goal goal_of(const Model& model, const Task& task) {
     read_bearings(model, task, metric, goal);
   }
   return goal;
+}
+
+bool is_measured(const Model& model, const Task& task, ObjectId thing) {
+  Goal goal;
+  Reader reader(model, task, goal);
+  for (const Metric& metric : task.judged) reader.speak(metric);
+  return goal.speaks_of_all || goal.spoken.contains(thing);
 }
 
 }  // namespace probe::sema

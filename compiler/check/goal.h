@@ -55,11 +55,17 @@ struct Goal {
   bool speaks_of_all = false;
   // Something that has to hold of things that are not named: what is said of one may be meant.
   bool asks_of_all = false;
+  // It holds of what is at the last step alone, and nothing in it remembers an earlier one.
+  bool forgets = false;
   // Of two things that the first is higher, whatever their sizes.
   std::set<std::pair<ObjectId, ObjectId>> above;
 };
 
 // In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.
 Goal goal_of(const Model& model, const Task& task);
+
+// Whether some metric of the task may measure something of a thing: by name, by role, or through a
+// set that it may be in.
+bool is_measured(const Model& model, const Task& task, ObjectId thing);
 
 }  // namespace probe::sema

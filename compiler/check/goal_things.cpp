@@ -53,11 +53,35 @@ Things GoalThings::things_in(SetRef ref, const Given& given) const {
     found.insert(filled.begin(), filled.end());
   }
   for (const ExprRef body : set.bodies) found.merge(things(body, given));
+  // As it is lowered: those that a joint moves.
+  if (set.op == SetOp::kParts) {
+    for (const FixtureId id : model_.scenes[task_.scene].fixtures) {
+      for (const Fixture::Part& part : model_.fixtures[id].parts) {
+        if (part.declared && part.joint) found.insert(part.thing);
+      }
+    }
+    found.erase(ObjectId::kNone);
+  }
+  if (set.op == SetOp::kDifference && is_certain(set.left) && is_certain(set.right)) {
+    found = things_in(set.left, given);
+    for (const ObjectId one : things_in(set.right, given)) found.erase(one);
+  }
   if (set.op == SetOp::kUnion) {
     found = things_in(set.left, given);
     found.merge(things_in(set.right, given));
   }
   return found;
+}
+
+bool GoalThings::is_certain(SetRef ref) const {
+  const SetNode& set = model_.exprs.sets[ref];
+  switch (set.op) {
+    case SetOp::kUnion:
+    case SetOp::kDifference:
+      return is_certain(set.left) && is_certain(set.right);
+    default:
+      return set.op == SetOp::kRole || set.op == SetOp::kNames || set.op == SetOp::kParts;
+  }
 }
 
 Given GoalThings::given_to(const ExprNode& call, const Given& given) const {

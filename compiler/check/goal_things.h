@@ -20,8 +20,9 @@ class GoalThings {
 
   // Of what an expression speaks, but for what is inside the predicates that it calls.
   Things things(ExprRef ref, const Given& given) const;
-  // Of a set that names what is in it; of all other bodies nothing is certain.
+  // Of a set that names what is in it, and of parts; of all other bodies nothing is certain.
   Things things_in(SetRef ref, const Given& given) const;
+  bool is_certain(SetRef ref) const;
   // What the predicate that is called is of.
   Given given_to(const ExprNode& call, const Given& given) const;
 

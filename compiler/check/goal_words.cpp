@@ -66,7 +66,17 @@ std::string other_relation(const Model& model, const std::set<PredicateId>& judg
 }
 
 // What each of the table's words asks of a goal; empty where that is there.
-enum class Asks : std::uint8_t { kOpens, kCloses, kAmong, kSides, kThen, kAfter, kEach, kSpares };
+enum class Asks : std::uint8_t {
+  kOpens,
+  kCloses,
+  kAmong,
+  kSides,
+  kThen,
+  kAfter,
+  kEach,
+  kSpares,
+  kLeaves
+};
 struct GoalWords {
   std::string_view words;
   Asks asks;
@@ -274,6 +284,8 @@ class Told {
         return each_lack(one);
       case Asks::kSpares:
         return spare_lack(one);
+      case Asks::kLeaves:
+        return leave_lack(one);
     }
     return std::nullopt;
   }
@@ -339,6 +351,8 @@ class Told {
     if (goal().tells_sides) return std::nullopt;
     const auto at = said().find(one.words);
     if (!at || tells_which(*at)) return std::nullopt;
+    // What it stands before is not understood.
+    if (*at == 0 && !clauses().is_whole) return std::nullopt;
     std::vector<Things> behind;
     for (std::size_t i = *at + 1; i < said().words.size() && behind.size() < 2; ++i) {
       if (!said().words[i].of.empty()) behind.push_back(said().words[i].of);
@@ -376,6 +390,27 @@ class Told {
     return std::nullopt;
   }
 
+  // "do not move the can" of which no metric at all measures anything.
+  std::optional<std::string> leave_lack(const GoalWords& one) {
+    const auto at = said().find(one.words);
+    if (!at) return std::nullopt;
+    const auto& words = said().words;
+    for (std::size_t i = *at; i < words.size(); ++i) {
+      const Things& spared = words[i].of;
+      if (spared.empty()) continue;
+      if (one.words == "leave" && (i + 1 >= words.size() || !says_leave(words[i + 1].text)))
+        return std::nullopt;
+      if (std::any_of(spared.begin(), spared.end(),
+                      [&](ObjectId thing) { return is_measured(model_, task_, thing); }))
+        return std::nullopt;
+      return "no metric measures anything of " + name_of(spared);
+    }
+    return std::nullopt;
+  }
+  static bool says_leave(std::string_view word) {
+    return word == "alone" || word == "where" || word == "untouched" || word == "as";
+  }
+
   // "to the left of the plate" of which success is that it lies on the plate.
   std::optional<std::string> side_lack(const GoalWords& one) {
     if (goal().tells_sides) return std::nullopt;
@@ -393,16 +428,31 @@ class Told {
       const bool says_whither =
           one.words.starts_with("to the") ||
           (*at >= 2 && words[*at - 2].text == "to" && words[*at - 1].text == "the");
-      if (!says_whither && tells_which(*at)) continue;
+      if (!says_whither && (tells_which(*at) || follows_place(*at))) continue;
       return "its success measures nothing that tells one side from another";
     }
     return std::nullopt;
+  }
+
+  // "On the plate behind the towel": which plate.
+  bool follows_place(std::size_t at) {
+    const auto& words = said().words;
+    std::size_t noun = at;
+    while (noun > 0 && words[noun - 1].of.empty()) --noun;
+    if (noun == 0 || noun != at) return false;
+    constexpr auto kOn = std::to_array<std::string_view>({"on", "in", "into", "onto", "inside"});
+    for (std::size_t i = noun - 1; i > 0 && i + 4 > noun; --i) {
+      if (std::ranges::find(kOn, words[i - 1].text) != kOn.end()) return true;
+      if (!words[i - 1].of.empty() || words[i - 1].ends) return false;
+    }
+    return false;
   }
 
   // "first A, then B" of which success is that B was done first, wants no order of the two, or is
   // content with A.
   std::optional<std::string> order_lack(const GoalWords& one) {
     if (one.words == "once" && !is_of_time()) return std::nullopt;
+    if (one.words == "until" && !is_denied_until()) return std::nullopt;
     if (auto lack = other_order(one)) return lack;
     for (const auto& [first, second] : goal().order) {
       if (earliest(first) && earliest(second) && !is_asked(second))
@@ -418,6 +468,17 @@ class Told {
     const std::string& next = said().words[*at + 1].text;
     return (*at == 0 || said().words[*at - 1].text != "at") && next != "more" && next != "again" &&
            next != "and";
+  }
+
+  // "do not put B there until A is on it".
+  bool is_denied_until() {
+    const auto at = said().find("until");
+    const auto& words = said().words;
+    return at && std::any_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(*at),
+                             [](const Said::Word& word) {
+                               return word.text == "not" || word.text == "don't" ||
+                                      word.text == "never";
+                             });
   }
 
   bool is_asked(const Things& things) {
@@ -438,17 +499,30 @@ class Told {
       if (asked.of.empty() || asked.of[0].size() != 1) continue;
       const ObjectId thing = *asked.of[0].begin();
       const auto first = said().first(thing);
-      if (!first || model_.objects[thing].of) continue;
+      if (!first) continue;
       (*first < *at ? before : behind).insert(thing);
     }
     for (const ObjectId a : before) {
       for (const ObjectId b : behind) {
+        // "Open the drawer, then put the cup in it" says the way there.
+        const bool is_way = model_.objects[a].of || model_.objects[b].of;
+        if (is_way && !is_asked_alike(a, b)) continue;
         if (is_beside(a, b) && is_beside(b, a) && !is_ordered(a, b))
           return "its success wants no order of `" + model_.objects[a].name + "` and `" +
                  model_.objects[b].name + "`";
       }
     }
     return std::nullopt;
+  }
+
+  // Whether one predicate is asked of both, of parts: "open the top drawer, then the middle drawer".
+  bool is_asked_alike(ObjectId a, ObjectId b) {
+    const auto has = [&](PredicateId predicate, ObjectId thing) {
+      return goal().asked.contains({predicate, {Things{thing}}});
+    };
+    return std::any_of(goal().asked.begin(), goal().asked.end(), [&](const Goal::Asked& asked) {
+      return has(asked.predicate, a) && has(asked.predicate, b);
+    });
   }
 
   // Whether nothing that is asked of A is asked of A and B together.
@@ -481,7 +555,8 @@ class Told {
       // Between the two, else at the beginning, where "then" and "afterwards" ask for nothing.
       auto at = said().find(one.words, std::min(*a, *b));
       const bool is_between = at && *at < std::max(*a, *b);
-      if (!is_between && one.words != "before" && one.asks != Asks::kAfter) continue;
+      const bool leads = one.words == "before" || one.words == "prior to" || one.words == "ahead of";
+      if (!is_between && !leads && one.asks != Asks::kAfter) continue;
       if (!is_between) at = said().find(one.words);
       if (!at || (!is_between && *at > std::min(*a, *b))) continue;
       if (*at > 0 && said().words[*at - 1].text == "not") continue;
@@ -678,14 +753,19 @@ bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& 
     return std::any_of(asked.of.begin() + 1, asked.of.end(),
                        [&](const Things& of) { return of.contains(thing); });
   };
+  // Of one thing and another; of parts of fixtures, of one alone.
+  const auto is_of_one = [&](const Goal::Asked& one) {
+    if (one.of.empty() || one.of[0].size() != 1) return false;
+    const auto& part = model.objects[*one.of[0].begin()].of;
+    return one.of.size() > 1 ? !one.of[1].empty() : part && part->is_part();
+  };
   const auto& asked = told.goal().asked;
   for (const Goal::Asked& one : asked) {
-    if (one.of.size() < 2 || one.of[0].size() != 1 || one.of[1].empty()) continue;
+    if (!is_of_one(one)) continue;
     const ObjectId left_out = *one.of[0].begin();
     if (may_speak_of(model, told.said(), told.clauses(), left_out)) continue;
     for (const Goal::Asked& other : asked) {
-      if (other.predicate != one.predicate || other.of[0].size() != 1 || other.of[1].empty())
-        continue;
+      if (other.predicate != one.predicate || !is_of_one(other)) continue;
       const ObjectId said = *other.of[0].begin();
       if (said == left_out || is_given(one, said) || is_given(other, left_out) ||
           !told.said().first(said))
@@ -738,7 +818,8 @@ std::set<PartOf> parts_meant(const Model& model, const Task& task, Shared& share
 
 // "open the middle drawer" of which success is that the top drawer is open.
 bool says_other_part(const Model& model, const Task& task, Shared& shared, Reporter& reporter) {
-  if (has_negation(model.templates[task.say])) return false;
+  if (has_negation(model.templates[task.say]) || has_words(shared.text(task.say).folded, "except"))
+    return false;
   const std::set<PartOf> meant = parts_meant(model, task, shared);
   if (meant.empty()) return false;
   const auto is_meant = [&](const Object& thing) {

@@ -281,7 +281,8 @@ TEST_CASE("between two is measured to both") {
 
 TEST_CASE("a side that is said is one that success can tell") {
   const auto told = [](const std::string& goal, const std::string& words) {
-    return first_line(said_of_two("at end " + goal, words + " and leave {the helper} alone"));
+    return first_line(said_of_two("at end (" + goal + " and moved_xy(helper) < 1cm)",
+                                  words + " and leave {the helper} alone"));
   };
   const std::string to_the_left = "put {the source} to the left of {the target}";
   CHECK(told("over(source, target)", to_the_left) ==
