@@ -175,13 +175,7 @@ class ClauseGoal {
           [&](ObjectId said) { return is_same_place(said, place) || lies_on(said, place); });
       if (!may_be_there) return "success " + asks(thing, place);
     }
-    // Nothing that it is measured against, nor by what has a side: the place is in no way asked for.
-    const bool is_placed = goal_.tells_sides || goal_.speaks_of_all || goal_.asks_of_all ||
-                           is_measured_beside({thing}) || !measured_against(thing).empty() ||
-                           clause.what.size() != 1 || !clauses_.is_whole ||
-                           clauses_.all.size() != 1;
-    if (is_placed || task_.things().size() > 0) return std::nullopt;
-    return "success measures " + name(thing) + " against nothing";
+    return std::nullopt;
   }
 
   bool is_measured_beside(const Things& things) const {
