@@ -117,6 +117,8 @@ class Shared {
  public:
   explicit Shared(const Model& model) : model_(model) {}
 
+  using Filled = std::vector<std::uint32_t>;  // by role: how many, and which
+
   struct Text {
     std::string folded;
     std::vector<GoalWords> words;  // those of the table that are said
@@ -157,6 +159,29 @@ class Shared {
     return at->second;
   }
 
+  // What the metrics ask, of tasks that are judged by the same and whose roles the same fills.
+  const Goal& goal(const Task& task) {
+    std::pair<std::vector<Judged>, Filled> key;
+    for (const Metric& metric : task.judged)
+      key.first.emplace_back(metric.name == "success", metric.expr, metric.readout);
+    fill(key.second, task);
+    const auto [at, is_new] = goals_.try_emplace(std::move(key));
+    if (is_new) at->second = goal_of(model_, task);
+    return at->second;
+  }
+
+  // What an instruction says, of tasks that say the same of the same where the same stands.
+  const Said& said(const Task& task) {
+    const auto [at, is_new] = said_.try_emplace(heard_key(task));
+    if (is_new) at->second = said_by(model_, task);
+    return at->second;
+  }
+  const Clauses& clauses(const Task& task) {
+    const auto [at, is_new] = clauses_.try_emplace(heard_key(task));
+    if (is_new) at->second = clauses_of(model_, task);
+    return at->second;
+  }
+
   // Words and success of which nothing was to be said but for what the task itself is.
   bool is_known_right(TemplateId say, const std::vector<ExprRef>& success) const {
     return right_.contains({say, success});
@@ -167,7 +192,6 @@ class Shared {
 
   // The same of clauses, of tasks whose roles are filled alike: each by as many objects, by the
   // same parts; by the same objects where expressions name some.
-  using Filled = std::vector<std::uint32_t>;
   using ClauseKey = std::tuple<TemplateId, std::vector<ExprRef>, Filled>;
   ClauseKey clause_key(const Task& task) const {
     Filled filled;
@@ -185,8 +209,27 @@ class Shared {
   void keep_right_clauses(ClauseKey key) { right_clauses_.insert(std::move(key)); }
 
  private:
+  using Judged = std::tuple<bool, ExprRef, plan::Readout>;
+  using HeardKey = std::tuple<TemplateId, SceneId, Filled, std::vector<ObjectId>>;
+
+  void fill(Filled& by_role, const Task& task) const {
+    for (std::size_t i = 0; i < model_.roles.size(); ++i) {
+      const auto objects = task.objects_in(model_.roles.id(i));
+      by_role.push_back(static_cast<std::uint32_t>(objects.size()));
+      for (const ObjectId id : objects) by_role.push_back(static_cast<std::uint32_t>(id));
+    }
+  }
+  HeardKey heard_key(const Task& task) const {
+    Filled by_role;
+    fill(by_role, task);
+    return {task.say, task.scene, std::move(by_role), task.objects()};
+  }
+
   const Model& model_;
   std::map<TemplateId, Text> texts_;
+  std::map<std::pair<std::vector<Judged>, Filled>, Goal> goals_;
+  std::map<HeardKey, Said> said_;
+  std::map<HeardKey, Clauses> clauses_;
   std::map<std::vector<ExprRef>, std::set<PredicateId>> relations_;
   std::map<std::vector<ExprRef>, std::set<PartOf>> parts_;
   std::set<std::pair<TemplateId, std::vector<ExprRef>>> right_;
@@ -228,18 +271,18 @@ struct JointGoal {
 class Told {
  public:
   Told(const Model& model, const Task& task, Shared& shared)
-      : model_(model), task_(task), text_(shared.text(task.say)) {}
+      : model_(model), task_(task), shared_(shared), text_(shared.text(task.say)) {}
 
   const Said& said() {
-    if (!said_) said_ = said_by(model_, task_);
+    if (said_ == nullptr) said_ = &shared_.said(task_);
     return *said_;
   }
   const Goal& goal() {
-    if (!goal_) goal_ = goal_of(model_, task_);
+    if (goal_ == nullptr) goal_ = &shared_.goal(task_);
     return *goal_;
   }
   const Clauses& clauses() {
-    if (!clauses_) clauses_ = clauses_of(model_, task_);
+    if (clauses_ == nullptr) clauses_ = &shared_.clauses(task_);
     return *clauses_;
   }
 
@@ -623,10 +666,11 @@ class Told {
 
   const Model& model_;
   const Task& task_;
+  Shared& shared_;
   const Shared::Text& text_;
-  std::optional<Said> said_;
-  std::optional<Goal> goal_;
-  std::optional<Clauses> clauses_;
+  const Said* said_ = nullptr;
+  const Goal* goal_ = nullptr;
+  const Clauses* clauses_ = nullptr;
 };
 
 // An instruction that says the opposite of what success is, or another relation alone.

@@ -57,6 +57,8 @@ std::string plural_of(std::string_view noun) {
 }
 
 bool is_same_noun(std::string_view a, std::string_view b) {
+  // A plural begins like its noun: most words are told apart by that alone.
+  if (a.empty() || b.empty() || a.front() != b.front()) return a == b;
   return a == b || is_plural(a, b) || is_plural(b, a);
 }
 
