@@ -17,51 +17,57 @@ std::vector<std::string> spelled_out(std::string name) {
   return words;
 }
 
-}  // namespace
-
-Called::Called(const Model& model, const Task& task) : model_(model) {
-  const auto add = [&](ObjectId id) -> Thing& {
-    const Object& object = model.objects[id];
-    Thing thing{id, {}, {}, {}};
+Calling read(const Model& model, ObjectId id) {
+  const Object& object = model.objects[id];
+  Calling thing{id, {}, {}, {}};
+  const Fixture* const fixture = object.of ? &model.fixtures[object.of->fixture] : nullptr;
+  // A region without a name of its own is called as its part is, which may be another's.
+  const bool has_name = fixture == nullptr || !object.of->region ||
+                        !fixture->regions[*object.of->region].text.text.empty();
+  if (has_name) {
     thing.names.push_back(folded_words(object.text.text));
     for (const Phrase& phrase : object.phrases)
       thing.names.push_back(folded_words(phrase.text.text));
-    for (std::size_t i = 0; i < object.values.size(); ++i) {
-      for (const std::uint32_t value : object.values[i]) {
-        for (std::string& word :
-             folded_words(model.attributes[model.attributes.id(i)].values[value]))
-          thing.adjectives.push_back(std::move(word));
-      }
+  }
+  if (fixture != nullptr) thing.names.push_back(spelled_out(fixture->name));
+  for (std::size_t i = 0; i < object.values.size(); ++i) {
+    for (const std::uint32_t value : object.values[i]) {
+      for (std::string& word : folded_words(model.attributes[model.attributes.id(i)].values[value]))
+        thing.adjectives.push_back(std::move(word));
     }
-    things_.push_back(std::move(thing));
-    return things_.back();
-  };
+  }
+  for (const auto& name : thing.names) {
+    const auto end = std::find_if(name.begin(), name.end(), may_follow_noun);
+    if (end == name.begin()) continue;
+    thing.nouns.push_back(*(end - 1));
+    thing.adjectives.insert(thing.adjectives.end(), name.begin(), end - 1);
+  }
+  return thing;
+}
+
+}  // namespace
+
+const Calling& Callings::of(ObjectId thing) {
+  const auto [at, is_new] = known_.try_emplace(thing);
+  if (is_new) at->second = read(model_, thing);
+  return at->second;
+}
+
+Called::Called(const Model& model, const Task& task, Callings& callings) : model_(model) {
+  const auto add = [&](ObjectId id) { things_.push_back(&callings.of(id)); };
   for (const ObjectId id : task.objects()) add(id);
   for (const FixtureId id : model.scenes[task.scene].fixtures) {
     const Fixture& fixture = model.fixtures[id];
     for (const Fixture::Part& part : fixture.parts) {
-      if (part.declared && part.thing != ObjectId::kNone)
-        add(part.thing).names.push_back(spelled_out(fixture.name));
+      if (part.declared && part.thing != ObjectId::kNone) add(part.thing);
     }
     for (const Fixture::OwnRegion& region : fixture.regions) {
-      if (region.thing == ObjectId::kNone) continue;
-      Thing& thing = add(region.thing);
-      // Without a name of its own it is called as its part is, which may be another's.
-      if (region.text.text.empty()) thing.names.clear();
-      thing.names.push_back(spelled_out(fixture.name));
-    }
-  }
-  for (Thing& thing : things_) {
-    for (const auto& name : thing.names) {
-      const auto end = std::find_if(name.begin(), name.end(), may_follow_noun);
-      if (end == name.begin()) continue;
-      thing.nouns.push_back(*(end - 1));
-      thing.adjectives.insert(thing.adjectives.end(), name.begin(), end - 1);
+      if (region.thing != ObjectId::kNone) add(region.thing);
     }
   }
 }
 
-bool Called::is_name(const Thing& thing, const std::vector<std::string>& words,
+bool Called::is_name(const Calling& thing, const std::vector<std::string>& words,
                      std::size_t length) {
   return std::any_of(thing.names.begin(), thing.names.end(), [&](const auto& name) {
     return name.size() == length && std::equal(name.begin(), name.end() - 1, words.begin()) &&
@@ -69,7 +75,7 @@ bool Called::is_name(const Thing& thing, const std::vector<std::string>& words,
   });
 }
 
-bool Called::is_noun(const Thing& thing, const std::vector<std::string>& words,
+bool Called::is_noun(const Calling& thing, const std::vector<std::string>& words,
                      std::size_t length) {
   const bool has_noun =
       std::any_of(thing.nouns.begin(), thing.nouns.end(),
@@ -85,21 +91,21 @@ bool Called::is_noun(const Thing& thing, const std::vector<std::string>& words,
 Called::Found Called::find(const std::vector<std::string>& words) const {
   for (std::size_t length = words.size(); length > 0; --length) {
     Found whole{{}, length, false}, noun{{}, length, false};
-    for (const Thing& thing : things_) {
-      if (is_name(thing, words, length)) whole.of.insert(thing.id);
-      if (is_noun(thing, words, length)) noun.of.insert(thing.id);
+    for (const Calling* thing : things_) {
+      if (is_name(*thing, words, length)) whole.of.insert(thing->id);
+      if (is_noun(*thing, words, length)) noun.of.insert(thing->id);
     }
     Found& found = whole.of.empty() ? noun : whole;
     if (found.of.empty()) continue;
-    found.is_plural = std::none_of(things_.begin(), things_.end(), [&](const Thing& thing) {
-      if (!found.of.contains(thing.id)) return false;
+    found.is_plural = std::none_of(things_.begin(), things_.end(), [&](const Calling* thing) {
+      if (!found.of.contains(thing->id)) return false;
       // "Butter at the back" ends with no noun of its own.
       const bool is_called_so =
-          std::any_of(thing.names.begin(), thing.names.end(), [&](const auto& name) {
+          std::any_of(thing->names.begin(), thing->names.end(), [&](const auto& name) {
             return name.size() == length && name.back() == words[length - 1];
           });
-      return is_called_so || std::find(thing.nouns.begin(), thing.nouns.end(),
-                                       words[length - 1]) != thing.nouns.end();
+      return is_called_so || std::find(thing->nouns.begin(), thing->nouns.end(),
+                                       words[length - 1]) != thing->nouns.end();
     });
     return found;
   }
@@ -115,9 +121,9 @@ bool Called::has_part(const Things& of, ObjectId thing) const {
 }
 
 bool Called::is_adjective(std::string_view word) const {
-  return std::any_of(things_.begin(), things_.end(), [&](const Thing& thing) {
-    return std::find(thing.adjectives.begin(), thing.adjectives.end(), word) !=
-           thing.adjectives.end();
+  return std::any_of(things_.begin(), things_.end(), [&](const Calling* thing) {
+    return std::find(thing->adjectives.begin(), thing->adjectives.end(), word) !=
+           thing->adjectives.end();
   });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,9 +13,28 @@
 
 namespace probe::sema {
 
+// What one thing may be called, whichever task it is in.
+struct Calling {
+  ObjectId id = ObjectId::kNone;
+  std::vector<std::vector<std::string>> names;  // its own, of its phrases, of its fixture
+  std::vector<std::string> nouns;               // of them: "bowl" of "bowl on the left"
+  std::vector<std::string> adjectives;          // words before them, values of attributes
+};
+
+// Of all things of a model, each read when first asked for.
+class Callings {
+ public:
+  explicit Callings(const Model& model) : model_(model) {}
+  const Calling& of(ObjectId thing);
+
+ private:
+  const Model& model_;
+  std::map<ObjectId, Calling> known_;
+};
+
 class Called {
  public:
-  Called(const Model& model, const Task& task);
+  Called(const Model& model, const Task& task, Callings& callings);
 
   // All that the longest beginning of these folded words may mean: by a name or the words of a
   // phrase, else by the noun at the end of one with words before it that are true of the thing. A
@@ -33,19 +53,13 @@ class Called {
   bool has_part(const Things& of, ObjectId thing) const;
 
  private:
-  struct Thing {
-    ObjectId id = ObjectId::kNone;
-    std::vector<std::vector<std::string>> names;  // its own, of its phrases, of its fixture
-    std::vector<std::string> nouns;               // of them: "bowl" of "bowl on the left"
-    std::vector<std::string> adjectives;          // words before them, values of attributes
-  };
-  static bool is_name(const Thing& thing, const std::vector<std::string>& words,
+  static bool is_name(const Calling& thing, const std::vector<std::string>& words,
                       std::size_t length);
-  static bool is_noun(const Thing& thing, const std::vector<std::string>& words,
+  static bool is_noun(const Calling& thing, const std::vector<std::string>& words,
                       std::size_t length);
 
   const Model& model_;
-  std::vector<Thing> things_;
+  std::vector<const Calling*> things_;
 };
 
 }  // namespace probe::sema

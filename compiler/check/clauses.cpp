@@ -122,8 +122,8 @@ std::vector<Token> tokens_of(const Model& model, const Task& task) {
 // Reads clauses one after the other, each as far as it goes.
 class ClauseReader {
  public:
-  ClauseReader(const Model& model, const Task& task)
-      : called_(model, task), words_(tokens_of(model, task)) {}
+  ClauseReader(const Model& model, const Task& task, Callings& callings)
+      : called_(model, task, callings), words_(tokens_of(model, task)) {}
 
   Clauses run() {
     while (at_ < words_.size()) {
@@ -701,6 +701,8 @@ std::size_t count_at_end(std::string_view text) {
   return is_some && !is_all ? 0 : number;
 }
 
-Clauses clauses_of(const Model& model, const Task& task) { return ClauseReader(model, task).run(); }
+Clauses clauses_of(const Model& model, const Task& task, Callings& callings) {
+  return ClauseReader(model, task, callings).run();
+}
 
 }  // namespace probe::sema

@@ -14,6 +14,8 @@
 
 namespace probe::sema {
 
+class Callings;
+
 struct Clause {
   enum class Does : std::uint8_t { kPuts, kTakes, kOpens, kCloses, kOther } does = Does::kOther;
   // One after the other what it is done with, by all that the words may mean: several things of
@@ -61,7 +63,7 @@ struct Clauses {
 };
 
 // In: a complete task.
-Clauses clauses_of(const Model& model, const Task& task);
+Clauses clauses_of(const Model& model, const Task& task, Callings& callings);
 
 // The number that a word is: 2 of "both" and "two"; 0 of others.
 std::size_t number_of(std::string_view word);

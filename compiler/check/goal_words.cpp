@@ -7,6 +7,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "compiler/check/called.h"
 #include "compiler/check/check.h"
 #include "compiler/check/clause_goal.h"
 #include "compiler/check/clauses.h"
@@ -115,7 +116,7 @@ void collect_parts(const Model& model, ExprRef ref, std::set<ExprRef>& seen,
 // What tasks that say or are judged by the same have in common, read once.
 class Shared {
  public:
-  explicit Shared(const Model& model) : model_(model) {}
+  explicit Shared(const Model& model) : model_(model), callings_(model) {}
 
   using Filled = std::vector<std::uint32_t>;  // by role: how many, and which
 
@@ -178,7 +179,7 @@ class Shared {
   }
   const Clauses& clauses(const Task& task) {
     const auto [at, is_new] = clauses_.try_emplace(heard_key(task));
-    if (is_new) at->second = clauses_of(model_, task);
+    if (is_new) at->second = clauses_of(model_, task, callings_);
     return at->second;
   }
 
@@ -226,6 +227,7 @@ class Shared {
   }
 
   const Model& model_;
+  Callings callings_;
   std::map<TemplateId, Text> texts_;
   std::map<std::pair<std::vector<Judged>, Filled>, Goal> goals_;
   std::map<HeardKey, Said> said_;

@@ -95,11 +95,11 @@ Said said_by(const Model& model, const Task& task) {
     }
     for (Said::Word& word : words_in(part.literal)) said.words.push_back(std::move(word));
   }
-  struct Called {
+  struct Nameable {
     ObjectId thing;
     std::vector<std::string> name;
   };
-  std::vector<Called> called;
+  std::vector<Nameable> called;
   for (const ObjectId id : nameable(model, task))
     called.push_back({id, folded_words(model.objects[id].text.text)});
   for (std::size_t i = 0; i < said.words.size(); ++i) {
