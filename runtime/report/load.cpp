@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -183,6 +184,7 @@ class FolderLoader {
     const PlanTasks& map = plans_.map(plan);
     run::Delivery delivery(file);
     std::vector<Episode> episodes;
+    if (const auto rows = store::count_rows(dir)) episodes.reserve(*rows);
     std::vector<char> has_task(benchmark_.tasks.size(), 0);
     std::map<int, std::array<int, 2>> kept;  // failures and successes, by task
     std::size_t unknown = 0;
@@ -299,10 +301,13 @@ class FolderLoader {
     const auto middle = static_cast<std::ptrdiff_t>(held_[policy].size());
     held_[policy].insert(held_[policy].end(), keys.begin(), keys.end());
     std::inplace_merge(held_[policy].begin(), held_[policy].begin() + middle, held_[policy].end());
-    benchmark_.episodes.reserve(benchmark_.episodes.size() + episodes.size());
-    for (Episode& e : episodes) {
-      e.policy = static_cast<int>(policy);
-      benchmark_.episodes.push_back(std::move(e));
+    for (Episode& e : episodes) e.policy = static_cast<int>(policy);
+    if (benchmark_.episodes.empty()) {
+      benchmark_.episodes = std::move(episodes);
+    } else {
+      benchmark_.episodes.insert(benchmark_.episodes.end(),
+                                 std::make_move_iterator(episodes.begin()),
+                                 std::make_move_iterator(episodes.end()));
     }
     benchmark_.policies[policy].runs.push_back(std::move(info));
   }

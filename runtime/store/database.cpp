@@ -1,7 +1,9 @@
 // The adapter to SQLite.
 #include "runtime/store/database.h"
 
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <vector>
@@ -37,8 +39,16 @@ Result<Database> Database::open(const std::string& path, Access access, std::str
   if (is_there(path) && !is_file(path)) {
     return Failure{Fault::kStore, "is no file but a folder, a device or a pipe", path};
   }
+  // SQLite would make it for its owner alone to write, whatever the umask of a folder that a group
+  // shares. Its journals are as the database is.
+  if (access == Access::kWrite && !is_there(path)) {
+    const int made = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (made >= 0) ::close(made);
+  }
   // Without write permission SQLite falls back to read-only by itself.
-  const int flags = SQLITE_OPEN_READWRITE | (access == Access::kWrite ? SQLITE_OPEN_CREATE : 0);
+  // Who reads does so in one thread; a lock for each value of a million rows costs more than they.
+  const int flags = SQLITE_OPEN_READWRITE |
+                    (access == Access::kWrite ? SQLITE_OPEN_CREATE : SQLITE_OPEN_NOMUTEX);
   if (sqlite3_open_v2(path.c_str(), &database.handle_, flags, nullptr) != SQLITE_OK) {
     return Failure{Fault::kStore,
                    std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path};

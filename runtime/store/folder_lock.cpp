@@ -37,7 +37,7 @@ std::string reason(int error) {
 Result<FolderLock> FolderLock::take(const std::string& dir, LockCall call) {
   const std::string path = dir + "/lock";
   const int file =
-      ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
+      ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
   if (file < 0) {
     return Failure{Fault::kStore,
                    std::string("the folder cannot be written: ") + std::strerror(errno), dir};

@@ -159,9 +159,9 @@ class Prover {
     bool is_new = false;
   };
 
-  void prove_one(Row& one) const {
+  void prove_one(Row& one, ProofKeys& keys) const {
     // How late answers were is in traces alone.
-    if (run_.live_terms.empty()) one.key = proof_key(one.row);
+    if (run_.live_terms.empty()) one.key = keys.of(one.row);
     if (one.key) {
       const std::vector<double>* known = book_.find(*one.key);
       if (known != nullptr && add_known(plan_, *known, one.row)) return;
@@ -181,14 +181,15 @@ class Prover {
       if (!one.row.invalid) one.live = live_figures(*trace);
       add_task(plan_, *trace, one.row);
       // A change while it was read leaves another stamp.
-      one.is_new = one.key && proof_key(one.row) == one.key;
+      one.is_new = one.key && keys.of(one.row) == one.key;
     }
   }
 
   Status hand_on() {
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
-      for (std::size_t i = next++; i < rows_.size(); i = next++) prove_one(rows_[i]);
+      ProofKeys keys;
+      for (std::size_t i = next++; i < rows_.size(); i = next++) prove_one(rows_[i], keys);
     };
     std::vector<std::thread> others;
     const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());

@@ -2,8 +2,11 @@
 // of all that.
 #include "runtime/store/proof_book.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
+#include <bit>
 #include <cstring>
 #include <ctime>
 #include <utility>
@@ -24,9 +27,24 @@ constexpr std::string_view kMagic = "vlaprobe proofs 1\n";
 
 }  // namespace
 
-std::optional<ProofKey> proof_key(const ResultRow& row) {
+ProofKeys::~ProofKeys() {
+  if (file_ >= 0) ::close(file_);
+}
+
+std::optional<ProofKey> proof_key(const ResultRow& row) { return ProofKeys().of(row); }
+
+std::optional<ProofKey> ProofKeys::of(const ResultRow& row) {
+  const std::size_t slash = row.trace.rfind('/');
+  if (slash == row.trace.npos) return std::nullopt;
+  if (file_ < 0 || row.trace.compare(0, slash, folder_) != 0) {
+    if (file_ >= 0) ::close(file_);
+    folder_ = row.trace.substr(0, slash);
+    file_ = ::open(folder_.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  }
   struct stat file {};
-  if (::stat(row.trace.c_str(), &file) != 0 || !S_ISREG(file.st_mode)) return std::nullopt;
+  if (file_ < 0 || ::fstatat(file_, row.trace.c_str() + slash + 1, &file, 0) != 0 ||
+      !S_ISREG(file.st_mode))
+    return std::nullopt;
   const std::time_t now = std::time(nullptr);
   if (file.st_ctim.tv_sec + kCoarse >= now || file.st_mtim.tv_sec + kCoarse >= now)
     return std::nullopt;
@@ -57,10 +75,23 @@ std::optional<ProofKey> proof_key(const ResultRow& row) {
   return key;
 }
 
-std::size_t ProofBook::Hash::operator()(const ProofKey& key) const {
-  std::size_t value = 0;
-  std::memcpy(&value, key.bytes.data(), sizeof value);
-  return value;
+// Where the table has `key`, or would take it. Keys are hashes: their first bytes are as good as any.
+ProofBook::Place& ProofBook::place_of(const ProofKey& key) {
+  std::size_t at = 0;
+  std::memcpy(&at, key.bytes.data(), sizeof at);
+  for (at &= places_.size() - 1;; at = (at + 1) & (places_.size() - 1)) {
+    Place& place = places_[at];
+    if (place.key == key || place.key == ProofKey{}) return place;
+  }
+}
+
+void ProofBook::make_room(std::size_t proofs) {
+  if (2 * proofs < places_.size()) return;
+  std::vector<Place> before(std::bit_ceil(2 * proofs + 2));
+  before.swap(places_);
+  for (const Place& place : before) {
+    if (place.key != ProofKey{}) place_of(place.key) = place;
+  }
 }
 
 ProofBook::ProofBook(const std::string& dir, const plan::Plan& plan, const std::string& folder) {
@@ -84,34 +115,49 @@ ProofBook::ProofBook(const std::string& dir, const plan::Plan& plan, const std::
     return read;
   };
   const std::size_t plain = from.count(from.u64(), sizeof(ProofKey));
-  proofs_.reserve(plain);
-  for (std::size_t i = 0; i < plain; ++i) proofs_.try_emplace(key());
+  make_room(plain);
+  for (std::size_t i = 0; i < plain; ++i) put(key(), {});
   while (from.ok() && from.left() > 0) {
     const ProofKey read = key();
-    proofs_[read].joints = from.reals();
+    put(read, from.reals());
   }
-  if (!from.ok()) proofs_.clear();
+  if (from.ok()) return;
+  places_.clear();
+  taken_ = 0;
+}
+
+ProofBook::Place& ProofBook::put(const ProofKey& key, std::vector<double> joints) {
+  make_room(taken_ + 1);
+  Place& place = place_of(key);
+  if (place.key != key) ++taken_;
+  place.key = key;
+  if (joints.empty()) {
+    place.joints = 0;
+  } else {
+    place.joints = static_cast<std::uint32_t>(joints_.size());
+    joints_.push_back(std::move(joints));
+  }
+  return place;
 }
 
 const std::vector<double>* ProofBook::find(const ProofKey& key) const {
-  const auto at = proofs_.find(key);
-  if (at == proofs_.end()) return nullptr;
-  at->second.is_used = true;
-  return &at->second.joints;
+  if (places_.empty()) return nullptr;
+  const Place& place = const_cast<ProofBook*>(this)->place_of(key);
+  if (place.key != key || key == ProofKey{}) return nullptr;
+  place.is_used = true;
+  return &joints_[place.joints];
 }
 
 void ProofBook::add(const ProofKey& key, std::vector<double> joints) {
-  Entry& entry = proofs_[key];
-  entry.joints = std::move(joints);
-  entry.is_used = true;
+  put(key, std::move(joints)).is_used = true;
   has_new_ = true;
 }
 
 void ProofBook::keep() {
   std::size_t plain = 0, used = 0;
-  for (const auto& [key, entry] : proofs_) {
-    used += entry.is_used ? 1 : 0;
-    plain += entry.is_used && entry.joints.empty() ? 1 : 0;
+  for (const Place& place : places_) {
+    used += place.is_used ? 1 : 0;
+    plain += place.is_used && place.joints == 0 ? 1 : 0;
   }
   if (!has_new_ || path_.empty() || used < kWorthKeeping) return;
   ByteWriter body;
@@ -119,13 +165,13 @@ void ProofBook::keep() {
   const auto put = [&](const ProofKey& key) {
     for (const std::uint8_t byte : key.bytes) body.u8(byte);
   };
-  for (const auto& [key, entry] : proofs_) {
-    if (entry.is_used && entry.joints.empty()) put(key);
+  for (const Place& place : places_) {
+    if (place.is_used && place.joints == 0) put(place.key);
   }
-  for (const auto& [key, entry] : proofs_) {
-    if (!entry.is_used || entry.joints.empty()) continue;
-    put(key);
-    body.reals(entry.joints);
+  for (const Place& place : places_) {
+    if (!place.is_used || place.joints == 0) continue;
+    put(place.key);
+    body.reals(joints_[place.joints]);
   }
   std::string text = head_;
   text.append(reinterpret_cast<const char*>(body.bytes().data()), body.bytes().size());

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "runtime/base/cache_folder.h"
@@ -25,6 +24,21 @@ struct ProofKey {
 // Nothing where the file is not there, or changed so lately that a change after this one could have
 // the same stamp.
 std::optional<ProofKey> proof_key(const ResultRow& row);
+
+// Keys of many rows, one after the other: the folder of the last trace stays open, since looking up
+// a path of many folders is most of what asking for a file costs. For a short while, in one thread.
+class ProofKeys {
+ public:
+  ProofKeys() = default;
+  ~ProofKeys();
+  ProofKeys(const ProofKeys&) = delete;
+  ProofKeys& operator=(const ProofKeys&) = delete;
+  std::optional<ProofKey> of(const ResultRow& row);
+
+ private:
+  std::string folder_;
+  int file_ = -1;
+};
 
 class ProofBook {
  public:
@@ -43,15 +57,21 @@ class ProofBook {
   void keep();
 
  private:
-  struct Hash {
-    std::size_t operator()(const ProofKey& key) const;
+  // A million proofs in one table of open places, since each would otherwise be a piece of memory
+  // of its own. A key of zeros is no place's: it stands for none.
+  struct Place {
+    ProofKey key;
+    std::uint32_t joints = 0;     // of joints_; 0: none
+    mutable bool is_used = false;  // in this process; several threads may look at different places
   };
-  struct Entry {
-    std::vector<double> joints;
-    mutable bool is_used = false;
-  };
+  Place& place_of(const ProofKey& key);  // of places_, which are not empty
+  Place& put(const ProofKey& key, std::vector<double> joints);
+  void make_room(std::size_t proofs);
+
   std::string path_, head_;
-  std::unordered_map<ProofKey, Entry, Hash> proofs_;
+  std::vector<Place> places_;  // a power of two of them, at most half taken
+  std::size_t taken_ = 0;
+  std::vector<std::vector<double>> joints_ = {{}};
   bool has_new_ = false;
 };
 

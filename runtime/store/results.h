@@ -67,6 +67,11 @@ Result<std::vector<ResultRow>> read_results(const std::string& dir);
 // it.
 using RowVisitor = std::function<Status(ResultRow&&)>;
 Status for_each_row(const std::string& dir, const RowVisitor& visit);
+// Those of one episode, ascending by seed; nobody reads the others for them.
+Result<std::vector<ResultRow>> read_episode(const std::string& dir, const std::string& task,
+                                            int episode);
+// The tasks that have rows, in the plan's order.
+Result<std::vector<std::string>> read_stored_tasks(const std::string& dir);
 // How many there are.
 Result<std::size_t> count_rows(const std::string& dir);
 

@@ -644,6 +644,34 @@ Status for_each_row(const std::string& dir, const RowVisitor& visit) {
   return visit_rows(database, dir, visit);
 }
 
+Result<std::vector<ResultRow>> read_episode(const std::string& dir, const std::string& task,
+                                            int episode) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  PROBE_ASSIGN(RowReader reader, RowReader::open(database, dir));
+  std::vector<ResultRow> found;
+  std::pair<std::int64_t, std::int64_t> last{std::int64_t{episode} - 1, INT64_MAX};
+  for (;;) {
+    PROBE_ASSIGN(std::vector<ResultRow> rows, reader.read(task, last.first, last.second));
+    for (ResultRow& row : rows) {
+      const std::pair<std::int64_t, std::int64_t> key{row.episode, row.seed};
+      if (row.episode != episode) return found;
+      if (key <= last) return no_texts(database);
+      last = key;
+      found.push_back(std::move(row));
+    }
+    if (rows.size() < kRowsAtOnce) return found;
+  }
+}
+
+Result<std::vector<std::string>> read_stored_tasks(const std::string& dir) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  PROBE_ASSIGN(const auto record, load_record(database));
+  if (!record) return failed("no run here: results.sqlite is empty", dir);
+  return tasks_in_order(database);
+}
+
 Result<std::size_t> count_rows(const std::string& dir) {
   if (!is_there(database_path(dir))) return no_run(dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));

@@ -37,29 +37,18 @@ Result<Trace> read_stored_trace(const ResultRow& row) {
 
 Result<StoredTrace> find_trace(const std::string& dir, const std::string& task, int episode,
                                std::optional<int> seed) {
-  PROBE_ASSIGN(const auto rows, read_results(dir));
-  const ResultRow* found = nullptr;
-  bool has_task = false, has_episode = false;
-  for (const ResultRow& row : rows) {
-    if (row.task != task) continue;
-    has_task = true;
-    if (row.episode != episode) continue;
-    has_episode = true;
-    if (seed ? row.seed == *seed : found == nullptr) found = &row;
-  }
-  if (found == nullptr) {
+  PROBE_ASSIGN(const auto rows, read_episode(dir, task, episode));
+  if (rows.empty()) {
     const std::string name = "task `" + task + "`";
-    if (!has_task) {
-      std::vector<std::string> names;
-      for (const ResultRow& row : rows) names.push_back(row.task);
-      return Failure{Fault::kUsage, "this run has no " + name + did_you_mean(task, names), dir};
-    }
-    if (!has_episode) {
-      return Failure{Fault::kUsage, name + " has no stored episode " + std::to_string(episode),
-                     dir};
-    }
+    PROBE_ASSIGN(const auto tasks, read_stored_tasks(dir));
+    if (std::ranges::find(tasks, task) == tasks.end())
+      return Failure{Fault::kUsage, "this run has no " + name + did_you_mean(task, tasks), dir};
+    return Failure{Fault::kUsage, name + " has no stored episode " + std::to_string(episode), dir};
+  }
+  const auto found = seed ? std::ranges::find(rows, *seed, &ResultRow::seed) : rows.begin();
+  if (found == rows.end()) {
     return Failure{Fault::kUsage,
-                   "episode " + std::to_string(episode) + " of " + name + " has no seed " +
+                   "episode " + std::to_string(episode) + " of task `" + task + "` has no seed " +
                        std::to_string(*seed),
                    dir};
   }

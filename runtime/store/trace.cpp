@@ -197,10 +197,12 @@ struct Content {
 Result<Content> decompress(const std::string& path) {
   PROBE_ASSIGN(const std::string packed,
                read_file(path, {.most = kMaxFile, .code = Fault::kTrace}));
-  const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> stream(ZSTD_createDCtx(),
-                                                                       ZSTD_freeDCtx);
+  // Made once a thread: of a short trace, making them is a good part of the work.
+  thread_local const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> stream(
+      ZSTD_createDCtx(), ZSTD_freeDCtx);
+  thread_local std::vector<char> plain(ZSTD_DStreamOutSize());
+  ZSTD_DCtx_reset(stream.get(), ZSTD_reset_session_and_parameters);
   ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, kMaxWindowLog);
-  std::vector<char> plain(ZSTD_DStreamOutSize());
   Content content;
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   const auto at = [&](const char* what) { return what + (" " + std::to_string(in.pos)); };

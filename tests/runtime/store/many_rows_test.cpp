@@ -14,6 +14,7 @@
 #include "runtime/store/proof_book.h"
 #include "runtime/store/room.h"
 #include "runtime/store/store.h"
+#include "runtime/store/stored_trace.h"
 #include "tests/runtime/run/run_checks.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -219,6 +220,27 @@ TEST_CASE("a shard with a row that is not merged stays") {
   // Its trace has no row now.
   CHECK(std::ranges::any_of(found->spares,
                             [](const Spare& spare) { return spare.why == "no row is of it"; }));
+}
+
+// Rows that nobody could read stand for those that nobody has to.
+TEST_CASE("a trace of one episode is found without reading the rows of others") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  make_merged(dir, table_plan(4, 6));
+  const ResultRow row = read_results(dir).value().at(2);  // its episode's lowest seed
+  const auto refusal = [&](int episode, std::optional<int> seed) {
+    const auto found = find_trace(dir, row.task, episode, seed);
+    return found.ok() ? std::string() : found.failure().message;
+  };
+  CHECK(refusal(999, std::nullopt).find("no stored episode 999") != std::string::npos);
+  CHECK(refusal(row.episode, 8).find("has no seed 8") != std::string::npos);
+  change_database(dir,
+                  "insert into episodes select x'61', 0, 0, 1, '', '', 'p', '[]', 1, null, '', '', "
+                  "'', '', '', null, null");
+  const auto found = find_trace(dir, row.task, row.episode, std::nullopt);
+  REQUIRE_MESSAGE(found.ok(), to_text(found.failure()));
+  CHECK(found->row.trace_sha256 == row.trace_sha256);
+  CHECK(refusal(row.episode, 42).empty());
 }
 
 TEST_CASE("sizes are said with two digits or more") {
