@@ -8,11 +8,14 @@
 #include <charconv>
 #include <cmath>
 #include <ctime>
+#include <unordered_set>
 
 #include "runtime/base/digit_groups.h"
+#include "runtime/base/hash_number.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
+#include "runtime/base/sha256.h"
 #include "runtime/base/shell_word.h"
 #include "runtime/store/chosen.h"
 #include "runtime/store/folder_lock.h"
@@ -24,6 +27,7 @@ namespace probe::follow {
 namespace {
 
 constexpr std::size_t kNewest = 8;      // failures that are told
+constexpr std::size_t kMostRates = 64;  // metrics that are counted
 constexpr double kPaceOver = 600;       // s
 constexpr std::size_t kLongestWhy = 160;  // characters
 
@@ -44,6 +48,14 @@ int shards_of(const std::string& name) {
   return read.ec == std::errc() && read.ptr == end ? shards : 0;
 }
 
+void add_newest(std::vector<Failure>& newest, Failure failure) {
+  const auto at = std::ranges::find_if(
+      newest, [&](const Failure& other) { return other.ended_s < failure.ended_s; });
+  if (at == newest.end() && newest.size() >= kNewest) return;
+  newest.insert(at, std::move(failure));
+  if (newest.size() > kNewest) newest.pop_back();
+}
+
 }  // namespace
 
 std::optional<double> Seen::left_s() const {
@@ -51,48 +63,60 @@ std::optional<double> Seen::left_s() const {
   return static_cast<double>(std::max<std::int64_t>(0, *chosen - rows)) / per_s;
 }
 
-void Following::add_failure(const std::string& dir, store::EpisodeKey key, std::string why,
-                            const std::string& trace) {
-  if (!known_.insert(dir + "\n" + store::file_stem(key)).second) return;
-  struct stat file {};
-  const double ended = ::stat(trace.c_str(), &file) == 0
-                           ? static_cast<double>(file.st_mtim.tv_sec) +
-                                 static_cast<double>(file.st_mtim.tv_nsec) * 1e-9
-                           : 0;
-  const auto at = std::ranges::find_if(
-      newest_, [&](const Failure& other) { return other.ended_s < ended; });
-  if (at == newest_.end() && newest_.size() >= kNewest) return;
-  newest_.insert(at, {dir, std::move(key), std::move(why), ended});
-  if (newest_.size() > kNewest) newest_.pop_back();
-}
-
+// What is told of failures is of the rows as they are: one that was run again and came out well is
+// none any more.
 Status Following::read(const std::string& dir, Folder& folder) {
-  folder = {folder.stamp, 0, 0, 0, {}};
-  return store::for_each_row(dir, [&](store::ResultRow&& row) -> Status {
-    ++folder.rows;
+  Folder now{folder.stamp, {}, {}, {}};
+  const auto add_failure = [&](const store::ResultRow& row, std::string why) {
+    const std::string trace = row.trace + " " + row.trace_sha256;
+    double& ended = now.written[trace];
+    if (const auto known = folder.written.find(trace); known != folder.written.end()) {
+      ended = known->second;
+    } else if (struct stat file {}; ::stat(row.trace.c_str(), &file) == 0) {
+      ended = static_cast<double>(file.st_mtim.tv_sec) +
+              static_cast<double>(file.st_mtim.tv_nsec) * 1e-9;
+    }
+    add_newest(now.newest, {dir, store::key_of(row), std::move(why), ended});
+  };
+  PROBE_TRY(store::for_each_row(dir, [&](store::ResultRow&& row) -> Status {
+    Row& one = now.rows.emplace_back();
+    one.episode = little_endian_number(sha256(store::file_stem(store::key_of(row))));
     if (store::is_not_attempted(row)) {
-      ++folder.not_attempted;
+      one.is = Row::Is::kNotAttempted;
       return {};
     }
     if (row.invalid) {
-      ++folder.invalid;
-      add_failure(dir, store::key_of(row), "invalid: " + *row.invalid, row.trace);
+      one.is = Row::Is::kInvalid;
+      add_failure(row, "invalid: " + *row.invalid);
       return {};
     }
     for (const store::MetricValue& metric : row.metrics) {
       if (!metric.is_bool) continue;
-      auto at = std::ranges::find(folder.rates, metric.name,
-                                  &std::pair<std::string, stats::Count>::first);
-      if (at == folder.rates.end())
-        at = folder.rates.insert(at, {metric.name, stats::Count{0, 0}});
-      at->second.k += metric.value != 0 ? 1 : 0;
-      ++at->second.n;
+      const auto at = static_cast<std::size_t>(
+          std::ranges::find(names_, metric.name) - names_.begin());
+      if (at >= kMostRates) continue;
+      if (at == names_.size()) names_.push_back(metric.name);
+      one.known |= std::uint64_t{1} << at;
+      one.true_ |= std::uint64_t{metric.value != 0} << at;
       if (metric.name == "success" && metric.value == 0)
-        add_failure(dir, store::key_of(row), fmt::format("no success in {} steps", row.steps),
-                    row.trace);
+        add_failure(row, fmt::format("no success in {} steps", row.steps));
     }
     return {};
-  });
+  }));
+  folder = std::move(now);
+  return {};
+}
+
+void Following::count(const Row& row, Seen& seen) const {
+  ++seen.rows;
+  if (row.is == Row::Is::kInvalid) ++seen.invalid;
+  if (row.is == Row::Is::kNotAttempted) ++seen.not_attempted;
+  for (std::size_t at = 0; at < names_.size(); ++at) {
+    if ((row.known >> at & 1) == 0) continue;
+    if (seen.rates.size() <= at) seen.rates.resize(at + 1);
+    ++seen.rates[at].second.n;
+    seen.rates[at].second.k += static_cast<std::int64_t>(row.true_ >> at & 1);
+  }
 }
 
 Result<Seen> Following::look(double now) {
@@ -106,40 +130,54 @@ Result<Seen> Following::look(double now) {
       dirs.push_back(dir_ + "/shards/" + name);
     }
   }
-  if (dirs.empty()) dirs.push_back(dir_);
-  std::int64_t chosen = 0;
+  const std::size_t present = dirs.size();
+  // Last, since a shard that goes on has the newer rows.
+  const bool is_merged = is_there(dir_ + "/results.sqlite");
+  if (dirs.empty() || is_merged) dirs.push_back(dir_);
+  std::int64_t chosen = 0, alone = 0;  // alone: rows that the merged run has and no shard
   bool knows_all = true;
-  for (const std::string& dir : dirs) {
+  std::unordered_set<std::uint64_t> counted;
+  for (std::size_t i = 0; i < dirs.size(); ++i) {
+    const std::string& dir = dirs[i];
+    const bool is_shard = i < present;
     Folder& folder = folders_[dir];
     const std::string stamp = stamp_of(dir + "/results.sqlite");
     seen.is_written = seen.is_written || store::FolderLock::is_taken(dir);
     if (stamp.empty()) continue;
-    ++seen.begun;
+    if (present == 0 || is_shard) ++seen.begun;
     if (stamp != folder.stamp) {
       PROBE_ASSIGN(const auto record, store::find_run_record(dir));
       if (!record) continue;  // just being made
       PROBE_TRY(read(dir, folder));
       folder.stamp = stamp;
     }
-    seen.rows += folder.rows;
-    seen.invalid += folder.invalid;
-    seen.not_attempted += folder.not_attempted;
-    for (const auto& [name, count] : folder.rates) {
-      auto at = std::ranges::find(seen.rates, name, &std::pair<std::string, stats::Count>::first);
-      if (at == seen.rates.end()) at = seen.rates.insert(at, {name, stats::Count{0, 0}});
-      at->second.k += count.k;
-      at->second.n += count.n;
+    for (const Row& row : folder.rows) {
+      if (present > 0 && is_merged && !counted.insert(row.episode).second) continue;
+      if (present > 0 && !is_shard) ++alone;
+      count(row, seen);
     }
+    for (const Failure& failure : folder.newest) {
+      const auto same = [&](const Failure& other) { return other.key == failure.key; };
+      if (!std::ranges::any_of(seen.newest, same)) add_newest(seen.newest, failure);
+    }
+    if (present > 0 && !is_shard) continue;
     const auto of_folder = store::read_chosen(dir);
     knows_all = knows_all && of_folder;
     chosen += of_folder.value_or(0);
+  }
+  for (std::size_t at = 0; at < seen.rates.size(); ++at) seen.rates[at].first = names_[at];
+  std::erase_if(seen.rates, [](const auto& rate) { return rate.second.n == 0; });
+  // What stands in the merged run alone is of shards that `gc` removed: they are done.
+  if (alone > 0 && seen.begun < seen.shards) {
+    seen.merged = seen.shards - seen.begun;
+    seen.begun = seen.shards;
+    chosen += alone;
   }
   if (knows_all && seen.begun > 0) {
     seen.is_about = seen.begun < seen.shards;
     seen.chosen = seen.is_about ? chosen * seen.shards / seen.begun : chosen;
   }
   if (seen.shards == 0) seen.begun = 0;
-  seen.newest = newest_;
   pace_.push_back({now, seen.rows});
   while (pace_.size() > 2 && now - pace_[1].first > kPaceOver) pace_.pop_front();
   const auto& [first, before] = pace_.front();
@@ -174,6 +212,8 @@ std::vector<std::string> to_lines(const Seen& seen) {
   line += " episodes";
   if (seen.shards > 0 && seen.begun < seen.shards)
     line += fmt::format(", {} of {} shards begun", seen.begun, seen.shards);
+  if (seen.merged > 0)
+    line += fmt::format(", {} of {} shards merged and removed", seen.merged, seen.shards);
   if (seen.not_attempted > 0) line += fmt::format(", {} not attempted", groups(seen.not_attempted));
   if (seen.invalid > 0) line += fmt::format(", {} invalid", groups(seen.invalid));
   if (seen.is_done()) {
@@ -230,6 +270,7 @@ Json to_json(const Seen& seen) {
           {"is_written", seen.is_written},
           {"shards", seen.shards},
           {"begun", seen.begun},
+          {"merged", seen.merged},
           {"per_minute", 60 * seen.per_s},
           {"left_s", left ? Json(*left) : Json()},
           {"left", left ? Json(duration_text(*left)) : Json()},

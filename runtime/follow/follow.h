@@ -2,11 +2,12 @@
 // Reads folders and nothing else, so it works on another machine than the run does.
 #pragma once
 
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
 #include <string>
-#include <unordered_set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct Seen {
   bool is_about = false;               // some shards have not begun: `chosen` is scaled up
   bool is_written = false;             // by a process of this machine
   int shards = 0, begun = 0;           // below DIR/shards; 0: it is one run
+  int merged = 0;                      // of them, whose folders are gone: their rows are DIR's own
   std::vector<std::pair<std::string, stats::Count>> rates;  // truths of valid episodes
   std::vector<Failure> newest;                              // the newest first
   double per_s = 0;                                         // episodes, of the last minutes; 0: unknown
@@ -52,19 +54,24 @@ class Following {
   Result<Seen> look(double now);
 
  private:
+  // Of a row what counts, since one of a shard may stand in the merged run as well.
+  struct Row {
+    std::uint64_t episode = 0;  // of the hash of its key
+    enum class Is : std::uint8_t { kValid, kInvalid, kNotAttempted } is = Is::kValid;
+    std::uint64_t known = 0, true_ = 0;  // by metric of names_
+  };
   struct Folder {
     std::string stamp;  // of its database when it was read
-    std::int64_t rows = 0, invalid = 0, not_attempted = 0;
-    std::vector<std::pair<std::string, stats::Count>> rates;
+    std::vector<Row> rows;
+    std::vector<Failure> newest;                      // as of that reading
+    std::unordered_map<std::string, double> written;  // when, by trace of a failure
   };
   Status read(const std::string& dir, Folder& folder);
-  void add_failure(const std::string& dir, store::EpisodeKey key, std::string why,
-                   const std::string& trace);
+  void count(const Row& row, Seen& seen) const;
 
   std::string dir_;
+  std::vector<std::string> names_;  // of metrics that are truths
   std::map<std::string, Folder> folders_;
-  std::unordered_set<std::string> known_;  // failures
-  std::vector<Failure> newest_;
   std::deque<std::pair<double, std::int64_t>> pace_;  // when, rows
 };
 

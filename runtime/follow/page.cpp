@@ -44,6 +44,7 @@ function draw(run) {
   at("dir").textContent = run.dir;
   const parts = [`${run.episodes.toLocaleString("en")}${run.chosen ? ` of ${run.is_about ? "about " : ""}${run.chosen.toLocaleString("en")}` : ""} episodes`];
   if (run.shards && run.begun < run.shards) parts.push(`${run.begun} of ${run.shards} shards begun`);
+  if (run.merged) parts.push(`${run.merged} of ${run.shards} shards merged and removed`);
   if (run.not_attempted) parts.push(`${run.not_attempted} not attempted`);
   if (run.invalid) parts.push(`${run.invalid} invalid`);
   if (run.is_done) parts.push("done");

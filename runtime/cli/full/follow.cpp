@@ -1,5 +1,6 @@
 #include "runtime/cli/full/follow.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -10,6 +11,7 @@
 #include "runtime/base/say.h"
 #include "runtime/cli/verbs.h"
 #include "runtime/cli/watch.h"
+#include "runtime/follow/drawing.h"
 #include "runtime/follow/follow.h"
 #include "runtime/follow/page.h"
 
@@ -18,21 +20,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Lines in the place of those before.
 class Drawn {
  public:
   void draw(const std::vector<std::string>& lines) {
-    std::string text;
-    if (lines_ > 0) text += "\033[" + std::to_string(lines_) + "A";
-    for (const std::string& line : lines) text += "\r\033[K" + line + "\n";
-    text += "\033[J";
+    struct winsize size {};
+    const bool is_known = ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+    const std::string text = drawing_.next(lines, is_known ? size.ws_col : 0, is_known ? size.ws_row : 0);
     std::fwrite(text.data(), 1, text.size(), stdout);
     std::fflush(stdout);
-    lines_ = lines.size();
   }
 
  private:
-  std::size_t lines_ = 0;
+  follow::Drawing drawing_;
 };
 
 }  // namespace
