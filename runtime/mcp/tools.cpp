@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@
 namespace probe::mcp {
 namespace {
 
-// What agents are shown of one text; the rest is counted.
+// What agents are shown of one text, or of one structured answer; the rest is counted.
 constexpr std::size_t kLongest = 60'000;
 
 enum class Kind { kText, kTexts, kWhole };
@@ -57,6 +57,7 @@ struct Tool {
   const char* key;
   const char* type;
   bool writes = false;
+  bool is_whole = false;  // of a text: a part of it is none
 };
 
 constexpr const char kFile[] = "a .probe text or .plan file";
@@ -89,7 +90,9 @@ const std::vector<Tool>& all_tools() {
        "A task's starts from above, as SVG.",
        {{"file", Kind::kText, true, kFile}, {"task", Kind::kText, true, "task name"}},
        "svg",
-       "string"},
+       "string",
+       false,
+       true},
       {"preview",
        "What the policy sees first in a task: a picture of one start, or of all beside each other.",
        {{"file", Kind::kText, true, kFile},
@@ -230,9 +233,40 @@ Json error_result(std::string text) {
   return result;
 }
 
+// As much of a list as an agent is shown; how many are left out. Never a part of an object, and of
+// a text only what can be read without the rest.
+std::size_t shorten_list(Json& list) {
+  Json kept = Json::array();
+  std::size_t bytes = 0;
+  for (const Json& one : list) {
+    bytes += one.dump().size() + 1;
+    if (bytes > kLongest) break;
+    kept.push_back(one);
+  }
+  const std::size_t left = list.size() - kept.size();
+  if (left > 0) list = std::move(kept);
+  return left;
+}
+
 Json good_result(const Tool& tool, Json value, std::string words = "") {
-  Json result = {{"isError", false}};
   const bool is_text = value.is_string();
+  if (is_text && !tool.is_whole) {
+    value = shortened(value.text());
+  } else if (value.is_array()) {
+    const std::size_t left = shorten_list(value);
+    if (left > 0) {
+      words = fmt::format("{} more are left out: the verb `{}` of vlaprobe has all\n", left,
+                          tool.name) +
+              words;
+    }
+  } else if (const std::size_t bytes = is_text ? value.text().size() : value.dump().size();
+             bytes > kLongest) {
+    return error_result(fmt::format("the answer has {} bytes, and {} at most are told here: ask for "
+                                    "less, or call the verb `{}` of vlaprobe and read its output "
+                                    "from a file",
+                                    bytes, kLongest, tool.name));
+  }
+  Json result = {{"isError", false}};
   std::string text = is_text ? value.text() : value.dump(1);
   if (!words.empty()) text = words + (text.empty() ? "" : "\n" + text);
   result["content"].push_back(text_content(std::move(text)));
@@ -243,7 +277,7 @@ Json good_result(const Tool& tool, Json value, std::string words = "") {
 // A run that goes on while its call has been answered.
 struct Child {
   pid_t process = -1;
-  std::string log;
+  int log = -1;  // what it says: a file without a name, so that none is left
   std::vector<std::string> words;
 };
 
@@ -256,7 +290,7 @@ class ProgramTools final : public Tools {
         ::kill(-child.process, SIGTERM);
         ::waitpid(child.process, nullptr, 0);
       }
-      std::remove(child.log.c_str());
+      if (child.log >= 0) ::close(child.log);
     }
   }
 
@@ -380,8 +414,7 @@ class ProgramTools final : public Tools {
     while ((ended = ::waitpid(child.process, &status, WNOHANG)) == 0 &&
            seconds_since(begun) < wait)
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    const auto log = read_file(child.log);
-    const std::string said = log ? *log : "";
+    const std::string said = said_by(child);
     Json answer = is_there(out + "/results.sqlite") ? seen(out) : Json::object();
     answer["is_running"] = ended == 0;
     if (ended != 0) {
@@ -394,34 +427,43 @@ class ProgramTools final : public Tools {
     return good_result(tool, std::move(answer), said);
   }
 
+  static std::string said_by(const Child& child) {
+    std::string said(kLongest, '\0');
+    const ssize_t got = ::pread(child.log, said.data(), said.size(), 0);
+    said.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+    return said;
+  }
+
   bool begin(Child& child, const Words& words) const {
-    if (child.log.empty()) {
-      char path[] = "/tmp/vlaprobe-run-XXXXXX.log";
-      const int file = ::mkstemps(path, 4);
-      if (file < 0) return false;
-      ::close(file);
-      child.log = path;
+    if (child.log < 0) {
+      char path[] = "/tmp/vlaprobe-run-XXXXXX";
+      child.log = ::mkostemp(path, O_CLOEXEC | O_APPEND);
+      if (child.log < 0) return false;
+      ::unlink(path);
     }
+    if (::ftruncate(child.log, 0) != 0) return false;
     child.words = words;
     std::vector<char*> arguments = {const_cast<char*>(program_.c_str())};
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, child.log.c_str(),
-                                     O_WRONLY | O_TRUNC, 0600);
-    posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-    // A group of its own, so that all of it can be ended.
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    const int error = ::posix_spawnp(&child.process, arguments[0], &actions, &attributes,
-                                     arguments.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) child.process = -1;
-    return error == 0;
+    const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const pid_t parent = ::getpid();
+    // This process has one thread, which the child's end hangs on: however an agent ends it, with a
+    // signal or by SIGKILL, the run ends, too, and can be continued. posix_spawn cannot ask for that.
+    child.process = ::fork();
+    if (child.process == 0) {
+      ::setpgid(0, 0);  // so that all of it can be ended
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != parent) ::_exit(127);
+      ::dup2(nothing, STDIN_FILENO);
+      ::dup2(child.log, STDOUT_FILENO);
+      ::dup2(child.log, STDERR_FILENO);
+      ::execvp(arguments[0], arguments.data());
+      ::_exit(127);
+    }
+    ::close(nothing);
+    if (child.process > 0) ::setpgid(child.process, child.process);
+    return child.process > 0;
   }
 
   const std::string program_;

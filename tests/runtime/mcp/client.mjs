@@ -1,6 +1,6 @@
 // client.mjs PACKAGES VLAPROBE SUITE FOLDER: `vlaprobe mcp` asked by the protocol's own client, which holds every answer of a
 // tool to the schema that the tool lists.
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -75,6 +75,30 @@ for (const [name, args] of [["check", {}], ["check", { files: [] }], ["check", {
 for (const [name, args] of [["list", { file: join(folder, "absent.probe") }], ["results", { dir: folder }], ["why", { dir: a, task: "carrot_on_plate", episode: 7 }],
   ["run", { file: suite, policy: "nobody", out: join(folder, "no") }], ["explain", { code: "P9999" }]]) await call(name, args, true);
 await client.callTool({ name: "rm", arguments: {} }).then(() => mistakes.push("a tool that is none was called"), () => {});
+
+// Of answers that are too long an agent is told that they are, and is given no part of an object.
+const many = join(folder, "many.probe");
+writeFileSync(many, `use "${suite}"\n` + Array.from({ length: 700 }, (_, i) => `variant again_${i} of carrot_on_plate { say drop_on }\n`).join(""));
+const cut = await call("list", { file: many });
+expect("tasks are cut to what is read", JSON.stringify(cut.structuredContent).length < 70_000 && cut.structuredContent.tasks.length > 50, JSON.stringify(cut).length);
+expect("and the rest is counted", /\d+ more are left out/.test(text(cut)), text(cut).slice(0, 200));
+
+// A run does not outlive whoever asked for it, however that ends.
+for (const signal of ["SIGTERM", "SIGKILL"]) {
+  const second = new Client({ name: "test", version: "1" });
+  const transport = new StdioClientTransport({ command: program, args: ["mcp"], stderr: "inherit" });
+  await second.connect(transport);
+  const out = join(folder, `left-${signal}`);
+  await second.callTool({ name: "run", arguments: { file: suite, policy: "expert", out, wait_s: 3 } });
+  const alive = () => readdirSync("/proc").some((name) => {
+    try { return /^\d+$/.test(name) && readFileSync(`/proc/${name}/cmdline`, "utf8").includes(`\0${out}\0`); } catch { return false; }
+  });
+  expect(`the run goes on (${signal})`, alive());
+  process.kill(transport.pid, signal);
+  for (let i = 0; i < 100 && alive(); ++i) await new Promise((done) => setTimeout(done, 100));
+  expect(`the run ended with its server (${signal})`, !alive());
+  await second.close().catch(() => {});
+}
 
 await client.close();
 for (const mistake of mistakes) console.error(mistake);
