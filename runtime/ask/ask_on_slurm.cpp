@@ -126,7 +126,9 @@ Result<std::map<int, std::int64_t>> missing_answers(const plan::Plan& plan, cons
 Result<cluster::SlurmReport> ask_on_slurm(const plan::Plan& plan, const AskOptions& asking,
                                           const cluster::ArrayOptions& options) {
   std::string model = asking.model;  // its port does not matter for what it is
-  if (const auto at = model.find("{port}"); at != std::string::npos) model.replace(at, 6, "1");
+  for (const auto& [place, any] : {std::pair{"{port}", "1"}, std::pair{"{host}", "127.0.0.1"}}) {
+    if (const auto at = model.find(place); at != std::string::npos) model.replace(at, 6, any);
+  }
   PROBE_ASSIGN(const ModelTraits traits, model_traits(model, asking.accepts_any_certificate));
   QueryChoice choice = asking.choice;
   choice.shard = choice.shards = 1;

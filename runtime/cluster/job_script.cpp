@@ -6,7 +6,7 @@
 namespace probe::cluster {
 namespace {
 
-constexpr std::string_view kPort = "{port}";
+constexpr std::string_view kPort = "{port}", kHost = "{host}";
 
 Failure usage(const std::string& message, const char* where) {
   return {Fault::kUsage, message, where};
@@ -18,6 +18,18 @@ constexpr const char* kHead = R"sh(#SBATCH --nodes=1
 #SBATCH --ntasks=1
 #SBATCH --requeue
 #SBATCH --output=/dev/null
+)sh";
+
+// What each shard does, of a job whose server is elsewhere: this script once more, started by srun.
+constexpr const char* kTask = R"sh(
+if [ "${1-}" = shard ]; then
+  shard=$((SLURM_PROCID + 1))
+  exec >>"$out/slurm/log/$shard.txt" 2>&1
+  echo "shard $shard of $shards: job $SLURM_JOB_ID on $(hostname), $(date '+%F %T')"
+  exec "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" @flag "$2"
+fi
+exec >>"$out/slurm/log/job.txt" 2>&1
+echo "$shards shards: job $SLURM_JOB_ID, server on $(hostname), $(date '+%F %T')"
 )sh";
 
 constexpr const char* kLog = R"sh(
@@ -71,7 +83,9 @@ start_server() {
     sleep 0.5
   done
 }
+)sh";
 
+constexpr const char* kWithServer = R"sh(
 # Exit code 2 is the outside, such as a server that died: what is stored stays, the rest is tried
 # again with a new server.
 status=2
@@ -80,6 +94,24 @@ for attempt in 1 2 3; do
   if start_server; then
     "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" \
       @flag "${policy//\{port\}/$port}"
+    status=$?
+    [ "$status" -ne 2 ] && break
+  fi
+  stop_server
+done
+exit "$status"
+)sh";
+
+constexpr const char* kWithServerApart = R"sh(
+# A shard that fails does not end the others. Exit code 2 is the outside, such as a server that died:
+# what is stored stays, the rest is tried again with a new server.
+status=2
+for attempt in 1 2 3; do
+  find_port "$attempt"
+  if start_server; then
+    asked=${policy//\{port\}/$port}
+    srun --het-group=1 --cpus-per-task="$worlds" --kill-on-bad-exit=0 --wait=0 --output=/dev/null \
+      bash "$out/slurm/job.sh" shard "${asked//\{host\}/$(hostname)}"
     status=$?
     [ "$status" -ne 2 ] && break
   fi
@@ -131,31 +163,59 @@ Result<std::string> to_text(const JobScript& script) {
     return usage("`{port}` is the port of a server that --server-command starts, and there is none",
                  script.actor_flag.c_str());
   }
+  if (!has_server && script.server_apart)
+    return usage("is of a server, which --server-command starts", "--server-sbatch");
+  const bool has_host = script.policy.find(kHost) != std::string::npos;
+  if (script.server_apart && !has_host) {
+    return usage("the server has a node of its own: write `{host}` in place of this machine's address",
+                 script.actor_flag.c_str());
+  }
+  if (!script.server_apart && has_host) {
+    return usage("`{host}` is the node of a server that --server-sbatch asks for, and there is none",
+                 script.actor_flag.c_str());
+  }
   if (has_line_break(script.server_command)) {
     return usage("the command is one line", "--server-command");
   }
   if (has_line_break(script.out) || has_line_break(script.program)) {
     return usage("a path with a line break cannot be written into a job", "-o");
   }
+  const std::string tasks = std::to_string(script.tasks);
   std::string text = "#!/bin/bash\n";
-  text += "# Evaluates shard I of " + std::to_string(script.tasks) +
-          " in task I of an array job; a task that runs again continues its shard.\n";
+  text += script.server_apart
+              ? "# Evaluates " + tasks +
+                    " shards, all asking one server that has a node of its own; a job that runs "
+                    "again continues them.\n"
+              : "# Evaluates shard I of " + tasks +
+                    " in task I of an array job; a task that runs again continues its shard.\n";
   text += "#   submit: sbatch " + shell_word(script.out + "/slurm/job.sh") + "\n";
   text += "#   join:   " + shell_word(script.program) + " merge " + shell_word(script.out) +
           "/shards/* -o " + shell_word(script.out) + "\n";
   text += "#SBATCH --job-name=vlaprobe\n";
-  text += "#SBATCH --array=1-" + std::to_string(script.tasks) + "\n";
-  text += "#SBATCH --cpus-per-task=" + std::to_string(script.worlds) + "\n";
-  text += kHead;
-  if (script.whole_nodes) text += "#SBATCH --exclusive\n";
-  for (const std::string& option : script.sbatch) {
-    if (has_line_break(option) || !option.starts_with("-")) {
-      return usage("`" + option + "` is not one option, as --partition=gpu is", "--sbatch");
+  const auto add_options = [&](const std::vector<std::string>& options,
+                               const char* flag) -> Status {
+    for (const std::string& option : options) {
+      if (has_line_break(option) || !option.starts_with("-"))
+        return usage("`" + option + "` is not one option, as --partition=gpu is", flag);
+      text += "#SBATCH " + sbatch_option(option) + "\n";
     }
-    text += "#SBATCH " + sbatch_option(option) + "\n";
+    return {};
+  };
+  if (script.server_apart) {
+    text += kHead;
+    PROBE_TRY(add_options(script.server_sbatch, "--server-sbatch"));
+    text += "#SBATCH hetjob\n#SBATCH --ntasks=" + tasks + "\n#SBATCH --requeue\n";
+    if (script.whole_nodes) text += "#SBATCH --ntasks-per-node=1\n";
+  } else {
+    text += "#SBATCH --array=1-" + tasks + "\n";
+    text += kHead;
   }
+  text += "#SBATCH --cpus-per-task=" + std::to_string(script.worlds) + "\n";
+  if (script.whole_nodes) text += "#SBATCH --exclusive\n";
+  PROBE_TRY(add_options(script.sbatch, "--sbatch"));
   text += "\nout=" + shell_word(script.out) + "\n";
   text += "shards=" + std::to_string(script.tasks) + "\n";
+  if (script.server_apart) text += "worlds=" + std::to_string(script.worlds) + "\n";
   text += "policy=" + shell_word(script.policy) + "\n";
   if (has_server) {
     text += "server_command=" + shell_word(script.server_command) + "\n";
@@ -165,8 +225,9 @@ Result<std::string> to_text(const JobScript& script) {
           " --name " + shell_word(script.name) + " --jobs " + std::to_string(script.worlds);
   for (const std::string& word : script.run_arguments) text += " " + shell_word(word);
   text += ")\n";
-  text += kLog;
-  std::string body = has_server ? kServer : kWorldsOnly;
+  std::string body = script.server_apart ? std::string(kTask) + kServer + kWithServerApart
+                     : has_server        ? std::string(kLog) + kServer + kWithServer
+                                         : std::string(kLog) + kWorldsOnly;
   constexpr std::string_view kFlag = "@flag";
   body.replace(body.find(kFlag), kFlag.size(), script.actor_flag);
   text += body;

@@ -1,5 +1,7 @@
-// The text of a Slurm array job: one task a shard, each with its own server if there is a command
-// for one. Texts in, text out; submits nothing.
+// The text of a Slurm job: an array with one task a shard, each with its own server if there is a
+// command for one; or, where the server wants another kind of node than the worlds, a heterogeneous
+// job (Slurm has no arrays of those) with the server in one part and all shards in the other. Texts
+// in, text out; submits nothing.
 #pragma once
 
 #include <string>
@@ -23,12 +25,17 @@ struct JobScript {
   std::string name;                        // what the rows call the policy
   std::string server_command;              // a line of shell, `{port}` as above; empty: worlds only
   int server_wait_s = 600;                 // until the server answers
+  // Options of sbatch for one server that all tasks ask, on a node of its own: a heterogeneous job.
+  // Then `{host}` in the policy stands for that node.
+  bool server_apart = false;
+  std::vector<std::string> server_sbatch;
   std::vector<std::string> run_arguments;  // further words for `vlaprobe run`
   std::vector<std::string> sbatch;         // further options of sbatch, "--partition=gpu"
 };
 
 // Fails (kUsage) on what cannot be written down: line breaks in an sbatch option or the
-// server's command, `{port}` in the policy without a server's command.
+// server's command, `{port}` in the policy without a server's command, `{host}` without a server
+// apart or the other way round.
 Result<std::string> to_text(const JobScript& script);
 
 // The folder of one shard's run below `out`: "shards/2-of-4".

@@ -38,8 +38,10 @@ using store::EpisodeKey;
 
 Result<std::set<EpisodeKey>> chosen_episodes(const plan::Plan& plan,
                                              const run::RunOptions& options) {
-  std::string policy = options.policy;  // its port does not matter for what it draws
-  if (const auto at = policy.find("{port}"); at != std::string::npos) policy.replace(at, 6, "1");
+  std::string policy = options.policy;  // where its server is does not matter for what it draws
+  for (const auto& [place, any] : {std::pair{"{port}", "1"}, std::pair{"{host}", "127.0.0.1"}}) {
+    if (const auto at = policy.find(place); at != std::string::npos) policy.replace(at, 6, any);
+  }
   run::RunOptions whole = options;
   whole.policy = policy;
   whole.shard = whole.shards = 1;

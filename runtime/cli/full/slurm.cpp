@@ -36,6 +36,7 @@ Result<cluster::ArrayOptions> array_options(const ArrayArguments& arguments) {
   options.script = arguments.script;
   options.script.tasks = arguments.array + arguments.nodes;
   options.script.whole_nodes = arguments.nodes > 0;
+  options.script.server_apart = !arguments.script.server_sbatch.empty();
   if (options.script.program.empty())
     options.script.program = (folder_of_program() / "vlaprobe").string();
   options.submit = arguments.submit;
@@ -95,6 +96,9 @@ void add_array_options(Verb verb, ArrayArguments& arguments) {
   verb.add_option("--server-wait", arguments.script.server_wait_s,
                   "seconds until a server answers (600)")
       .between(1, 86400);
+  verb.add_option("--server-sbatch", arguments.script.server_sbatch,
+                  "one server for all tasks on a node of its own, {host} in P: an option of sbatch "
+                  "for it, as --server-sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--sbatch", arguments.script.sbatch,
                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--program", arguments.script.program, "path of vlaprobe on the nodes");

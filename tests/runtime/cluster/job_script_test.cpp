@@ -62,6 +62,38 @@ TEST_CASE("the job says how many tasks and CPUs it wants, and passes other optio
   CHECK(to_text(script)->find("#SBATCH --exclusive\n") != std::string::npos);
 }
 
+TEST_CASE("a server on a node of its own and the worlds are two parts of one job") {
+  JobScript script = script_in("/out");
+  script.server_command = "serve --port {port}";
+  script.server_sbatch = {"--gres=gpu:1"};
+  script.server_apart = true;
+  script.policy = "openpi://{host}:{port}";
+  script.sbatch = {"--partition=cpu"};
+  const auto text = to_text(script);
+  REQUIRE_MESSAGE(text.ok(), to_text(text.failure()));
+  const auto gpu = text->find("#SBATCH --gres=gpu:1\n"), parts = text->find("#SBATCH hetjob\n");
+  const auto tasks = text->find("#SBATCH --ntasks=4\n"), cpu = text->find("#SBATCH --partition=cpu\n");
+  CHECK(gpu < parts);
+  CHECK(parts < tasks);
+  CHECK(tasks < cpu);
+  CHECK(cpu != std::string::npos);
+  CHECK(text->find("--array") == std::string::npos);
+  const auto refusal = [&](auto&& change) {
+    JobScript other = script;
+    change(other);
+    const auto refused = to_text(other);
+    return refused.ok() ? std::string() : to_text(refused.failure());
+  };
+  CHECK(refusal([](JobScript& s) { s.policy = "openpi://127.0.0.1:{port}"; }).find("write `{host}`") !=
+        std::string::npos);
+  CHECK(refusal([](JobScript& s) { s.server_apart = false; }).find("--server-sbatch asks for") !=
+        std::string::npos);
+  CHECK(refusal([](JobScript& s) {
+          s.server_command.clear();
+          s.policy = "null";
+        }).find("--server-command starts") != std::string::npos);
+}
+
 TEST_CASE("an option's value is one word for sbatch, whatever it holds") {
   JobScript script = script_in("/out");
   for (const auto& [option, line] : {

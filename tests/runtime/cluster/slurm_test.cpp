@@ -2,9 +2,6 @@
 #include "runtime/cluster/slurm.h"
 
 #include <doctest/doctest.h>
-#include <fcntl.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -16,6 +13,7 @@
 #include "runtime/base/file.h"
 #include "runtime/cluster/program.h"
 #include "runtime/store/store.h"
+#include "tests/runtime/cluster/cluster.h"
 #include "tests/runtime/run/table_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/servers/python_server.h"
@@ -24,43 +22,6 @@ namespace probe::cluster {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Lives as long as this object, and ends with this process however that ends.
-class Cluster {
- public:
-  explicit Cluster(const std::string& dir) {
-    int in[2], out[2];
-    REQUIRE(::pipe2(in, O_CLOEXEC) == 0);
-    REQUIRE(::pipe2(out, O_CLOEXEC) == 0);
-    process_ = ::fork();
-    REQUIRE(process_ >= 0);
-    if (process_ == 0) {
-      ::dup2(in[0], STDIN_FILENO);
-      ::dup2(out[1], STDOUT_FILENO);
-      const std::string script = VLAPROBE_SOURCE_DIR "/tests/servers/slurm_cluster.sh";
-      ::execl("/bin/bash", "bash", script.c_str(), dir.c_str(), nullptr);
-      ::_exit(127);
-    }
-    ::close(in[0]);
-    ::close(out[1]);
-    input_ = in[1];
-    for (char c = 0; ::read(out[0], &c, 1) == 1 && c != '\n';) said_.push_back(c);
-    ::close(out[0]);
-    ::setenv("SLURM_CONF", (dir + "/slurm.conf").c_str(), 1);
-  }
-  ~Cluster() {
-    ::close(input_);
-    ::waitpid(process_, nullptr, 0);
-    ::unsetenv("SLURM_CONF");
-  }
-  bool ready() const { return said_ == "ready"; }
-  const std::string& said() const { return said_; }
-
- private:
-  pid_t process_ = -1;
-  int input_ = -1;
-  std::string said_;
-};
 
 SlurmOptions options_for(const std::string& out) {
   SlurmOptions options;
@@ -211,6 +172,101 @@ TEST_CASE("each task starts its own server, and the rows are those of a run with
   const auto summary = run::run(plan, single);
   REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
   CHECK(rows_of(folder / "run") == rows_of(folder / "single"));
+}
+
+TEST_CASE("one server on a node of its own is asked by shards on others, and started again when it dies") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(6, 6);
+  const Cluster cluster(folder / "cluster", 3, 2);
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  SlurmOptions options = options_for(folder / "a run");
+  options.run.policy = "openpi://{host}:{port}";
+  options.run.seeds = {1};
+  options.script.tasks = 3;
+  options.script.server_apart = true;
+  options.script.server_sbatch = {"--nodelist=node3"};
+  options.script.sbatch = {"--exclude=node3"};
+  // The first server goes at once.
+  const std::string mark = folder / "begun";
+  options.script.server_command =
+      "[ -e " + mark + " ] || { touch " + mark +
+      "; exit 3; }; exec /usr/bin/python3 " VLAPROBE_SOURCE_DIR
+      "/tests/servers/openpi_digest_server.py {port}";
+  options.script.server_wait_s = 30;
+  const auto report = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  for (const std::string& note : report->notes) MESSAGE(note);
+  const auto log = read_file(folder / "a run/slurm/log/job.txt");
+  REQUIRE(log.ok());
+  CHECK_MESSAGE(log->find("the server ended before it answered") != std::string::npos, *log);
+  CHECK_MESSAGE(report->stored == 6, *log);
+
+  const test::PythonServer server("openpi_digest_server.py");
+  run::RunOptions single = options.run;
+  single.policy = "openpi://127.0.0.1:" + server.port();
+  single.name = options.run.policy;
+  single.out = folder / "single";
+  const auto summary = run::run(plan, single);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  CHECK(rows_of(folder / "a run") == rows_of(folder / "single"));
+}
+
+TEST_CASE("tasks that a more urgent job preempts go on behind it") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(12, 40);
+  const Cluster cluster(folder / "cluster");
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  const std::string out = folder / "run";
+  std::atomic<bool> was_preempted = false;
+  std::thread urgent([&] {
+    const auto some_rows = [&] {
+      const auto rows = store::read_results(out + "/" + shard_folder(1, 2));
+      return rows.ok() && !rows->empty();
+    };
+    if (!waited_for(some_rows)) return;
+    const auto sent = run_program({"sbatch", "--parsable", "--partition=urgent", "--exclusive",
+                                   "--output=/dev/null", "--wrap", "sleep 2"});
+    CHECK(sent->status == 0);
+    const std::string job = read_file(out + "/slurm/job").value();
+    const auto state_of = [&](const char* state) {
+      const auto said = run_program({"squeue", "--noheader", "--array", "--jobs", job, "--format=%t"});
+      return said.ok() && said->out.find(state) != std::string::npos;
+    };
+    if (!waited_for([&] { return state_of("PD") || state_of("CG"); })) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    was_preempted = waited_for([&] {
+      for (const char* task : {"_1", "_2"})
+        (void)run_program({"scontrol", "update", "JobId=" + job + task, "StartTime=now"});
+      return starts_in(out + "/slurm/log/1.txt") >= 2;
+    });
+  });
+  SlurmOptions options = options_for(out);
+  options.script.tasks = 2;
+  const auto report = run_on_slurm(plan, options);
+  urgent.join();
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  for (const std::string& note : report->notes) MESSAGE(note);
+  CHECK(was_preempted);
+  CHECK(report->stored == 24);
+  run::RunOptions single = options.run;
+  single.out = folder / "single";
+  single.jobs = 2;
+  REQUIRE(run::run(plan, single).ok());
+  CHECK(rows_of(out) == rows_of(folder / "single"));
+}
+
+TEST_CASE("a node that dies with all that runs on it: its tasks go on elsewhere, the rows are a single run's") {
+  const auto done = run_program({"bash", VLAPROBE_SOURCE_DIR "/tests/slurm_many.sh", "6", "96", "3",
+                                 "1", VLAPROBE_BINARY_DIR "/vlaprobe"});
+  REQUIRE(done.ok());
+  MESSAGE(done->out);
+  CHECK_MESSAGE(done->status == 0, done->err);
 }
 
 TEST_CASE("a job that cannot work is told with its log, and stays to be continued") {
