@@ -16,6 +16,7 @@
 #include "runtime/inspect/varied.h"
 #include "runtime/inspect/words.h"
 #include "runtime/inspect/wrap.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/roles.h"
 
 namespace probe::inspect {
@@ -116,7 +117,9 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   const plan::TaskRecord& b = plan.tasks()[second];
   const bool a_varies = a.baseline == second;
   const bool b_varies = b.baseline == first;
-  const WordDiff words = diff_words(plan.text(a.prompt), plan.text(b.prompt));
+  // All that either is told, in turn.
+  const WordDiff words = diff_words(plan::whole_instruction(plan.tables(), first),
+                                    plan::whole_instruction(plan.tables(), second));
   Json json;
   json["a"] = plan.text(a.name);
   json["b"] = plan.text(b.name);
@@ -170,6 +173,9 @@ std::string diff_text(const Json& diff) {
   }
   rows[1].a = marked(to_words(diff["words_a"]));
   rows[1].b = marked(to_words(diff["words_b"]));
+  for (const char* words : {"words_a", "words_b"}) {
+    for (const Json& word : diff[words]) rows[1].differs |= word["differs"].get<bool>();
+  }
   // Two columns side by side within a screen of 100; longer cells go on below themselves.
   constexpr std::size_t kMost = 41;
   std::size_t width = 0;

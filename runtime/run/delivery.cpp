@@ -8,6 +8,7 @@
 
 #include "runtime/base/json.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/plan.h"
 #include "runtime/store/not_attempted.h"
 
@@ -47,6 +48,8 @@ const char* delivery_word(DeliveryFinding::Kind kind) {
       return "many_prompts";
     case DeliveryFinding::Kind::kSamePicture:
       return "same_picture";
+    case DeliveryFinding::Kind::kNeverSaid:
+      return "never_said";
     case DeliveryFinding::Kind::kLive:
       return "live";
     case DeliveryFinding::Kind::kNothing:
@@ -72,6 +75,11 @@ class Delivery::Detector {
     const auto found = tasks_.find(row.task);
     if (found == tasks_.end()) return;
     ++(store::is_not_attempted(row) ? not_attempted_ : row.invalid ? invalid_ : valid_);
+    if (row.told_at && !row.invalid) {
+      Told& told = told_[found->second];
+      ++told.rows;
+      told.most = std::max(told.most, row.told_at->size());
+    }
     // Before the first request nothing was sent, and a row without a picture never got so far.
     if (row.image_sha256.empty()) return;
     Sent& sent = sent_[found->second];
@@ -100,10 +108,16 @@ class Delivery::Detector {
       check_prompt(task, sent);
       check_pictures(task, sent);
     }
+    for (const auto& [task, told] : told_) check_later(task, told);
     return std::move(findings_);
   }
 
  private:
+  // Of a task whose instruction changes: how many sentences behind the first were said at most.
+  struct Told {
+    std::size_t most = 0;
+    int rows = 0;
+  };
   // Of an episode, texts by their numbers.
   struct Picture {
     std::pair<int, int> key;  // episode, seed
@@ -142,6 +156,17 @@ class Delivery::Detector {
     }
   }
 
+  // What was never said cannot make a difference.
+  void check_later(std::uint32_t task, const Told& told) {
+    const auto sentences = plan::later_of(plan_.tables(), task);
+    for (std::size_t k = told.most; k < sentences.size(); ++k) {
+      add({DeliveryFinding::Kind::kNeverSaid, std::string(name(task)), "", "", told.rows, told.rows,
+           "task " + quoted(name(task)) + ": its later sentence \"" +
+               std::string(plan_.text(sentences[k].text)) + "\" was said in none of " +
+               count_of(told.rows, "episode") + ", because its condition never held"});
+    }
+  }
+
   void check_pictures(std::uint32_t task, const Sent& sent) {
     const plan::TaskRecord& record = plan_.tasks()[task];
     const std::string axes = visible_axes(record.axes);
@@ -172,6 +197,7 @@ class Delivery::Detector {
   std::set<std::uint32_t> shown_;  // whose pictures are compared
   int valid_ = 0, invalid_ = 0, not_attempted_ = 0;
   std::map<std::uint32_t, Sent> sent_;                  // by task
+  std::map<std::uint32_t, Told> told_;                  // by task
   std::unordered_map<std::string, std::size_t> texts_;  // with their numbers
   std::map<std::string_view, std::uint32_t> first_with_;  // a sent text: its first task
   std::vector<DeliveryFinding> findings_;

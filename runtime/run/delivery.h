@@ -20,6 +20,7 @@ struct DeliveryFinding {
     kSamePrompt,   // two instructions of the plan, one text sent
     kManyPrompts,  // one instruction of the plan, several texts sent
     kSamePicture,  // a variant and its baseline, equal first pictures of different starts
+    kNeverSaid,    // a later sentence that was said in no episode
     kNothing,      // no valid episode: what reached the policy cannot be said
     kLive,         // of a run whose world does not wait: how often and how late the policy answered
   };
@@ -48,12 +49,13 @@ class Delivery {
 
 // Of rows of one run of `plan`; tasks that the plan does not have are passed over. A policy in this
 // process is compared by what it was shown. Ascending by the plan's task order. Without a valid row
-// the first finding is that nothing can be said, and invalid ones may have others.
+// the first finding is that nothing can be said, and invalid ones may have others. Which later
+// sentences were said is known of proven rows alone.
 std::vector<DeliveryFinding> check_delivery(const plan::Plan& plan,
                                             std::span<const store::ResultRow> rows);
 
 // A JSON array of objects {kind, task, other, axes, episodes, compared, sentence}; kinds are
-// same_prompt, many_prompts, same_picture, nothing, live.
+// same_prompt, many_prompts, same_picture, never_said, nothing, live.
 std::string to_json(std::span<const DeliveryFinding> findings);
 
 }  // namespace probe::run

@@ -298,10 +298,10 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunSummary summary;
   summary.notes = selection.notes;
   summary.total = static_cast<int>(selection.jobs.size());
-  if (selection.jobs.empty()) {
+  const bool is_empty = selection.jobs.empty();
+  if (is_empty) {
     summary.notes.push_back("shard " + std::to_string(options.shard) + "/" +
                             std::to_string(options.shards) + " holds no episode: nothing to do");
-    return summary;
   }
   PROBE_TRY(check_seeds(selection, actor));
   if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
@@ -320,6 +320,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   PROBE_ASSIGN(auto store, store::Store::open(options.out, record, plan.bytes()));
   summary.out = options.out;
   store::write_chosen(options.out, summary.total);
+  // A shard of nothing is a part of the run like any other, for whoever merges all of them.
+  if (is_empty) return summary;
   const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
   summary.skipped = static_cast<int>(stored.size());

@@ -38,6 +38,19 @@ episode id 0 of 24 equal
 )");
 }
 
+TEST_CASE("a later sentence that differs is among the words that differ") {
+  const plan::Plan plan = test::compile_small(
+      "\nvariant in_turn of base { then say drop_on when step >= 9 }\n"
+      "suite more { tasks { base, in_turn }; seeds 1 }\n");
+  const auto index = [&](std::string_view name) { return plan.find_task(name).value(); };
+  const auto diff = diff_tasks(plan, index("base"), index("in_turn"));
+  CHECK(diff["right"]["prompt"] == "put carrot on plate");
+  const std::string text = diff_text(diff);
+  const auto prompt = text.find("\n* prompt");
+  REQUIRE(prompt != std::string::npos);
+  CHECK(text.find("then: ", prompt) < text.find("\n  source", prompt));
+}
+
 TEST_CASE("a distractor changes the starts but not what is meant by the judgement") {
   const auto diff = diff_tasks(test::small_plan(), test::task("crowded"), test::task("base"));
   CHECK(diff["baseline"] == "b");

@@ -6,6 +6,7 @@
 
 #include "runtime/base/sha256.h"
 #include "runtime/rejudge/rejudge.h"
+#include "runtime/run/delivery.h"
 #include "runtime/run/policies.h"
 #include "runtime/run/replay.h"
 #include "runtime/stage/stage.h"
@@ -72,6 +73,28 @@ TEST_CASE("each step is told the sentence in force, the trace and results say wh
   const auto judged = rejudge::rejudge(folder / "run", changing_plan());
   REQUIRE_MESSAGE(judged.ok(), to_text(judged.failure()));
   CHECK(judged->valid == 1);
+}
+
+TEST_CASE("a sentence that no episode came to is told of with what reached the policy") {
+  TemporaryFolder folder;
+  const plan::Plan plan = plan_of_text(R"(use "suite/intact.probe"
+task waiting like carrot_on_plate {
+  horizon 6 steps
+  then say "put down {the source}" when step >= 3
+  then say "put carrot on plate" when grasped(source)
+}
+suite mine trained on bridge_v2 { tasks { waiting }; seeds 42 }
+)");
+  must_run(plan, one_start(folder / "run"));
+  const auto proven = store::read_proven_results(folder / "run");
+  REQUIRE(proven.ok());
+  const auto findings = check_delivery(plan, proven->rows);
+  REQUIRE(findings.size() == 1);
+  CHECK(findings[0].kind == DeliveryFinding::Kind::kNeverSaid);
+  CHECK(findings[0].sentence ==
+        "task `waiting`: its later sentence \"put carrot on plate\" was said in none of 1 episode, "
+        "because its condition never held");
+  CHECK(to_json(findings).find("never_said") != std::string::npos);
 }
 
 TEST_CASE("a trace whose steps were told otherwise than the plan says is refused") {

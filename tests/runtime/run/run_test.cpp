@@ -16,6 +16,7 @@
 #include "runtime/run/replay.h"
 #include "runtime/run/selection.h"
 #include "runtime/scene/image.h"
+#include "runtime/store/merge.h"
 #include "runtime/store/store.h"
 #include "runtime/store/trace.h"
 #include "tests/runtime/run/run_checks.h"
@@ -270,13 +271,21 @@ TEST_CASE("what cannot run is told before anything is written") {
             .find("is the folder of a run, but ") != std::string::npos);
   options = options_for(folder / "run", "null");
   // The only episode is in the other one.
+  options.out = folder / "empty";
   options.shards = 2;
   options.shard = 3 - shard_of(Sha256{plan.episodes()[0].episode_id}, 42, 2);
   const RunSummary nothing = must_run(plan, options);
   CHECK(nothing.total == 0);
   CHECK(nothing.notes.back() ==
         "shard " + std::to_string(options.shard) + "/2 holds no episode: nothing to do");
-  CHECK_FALSE(fs::exists(options.out));
+  // It is a part of the run all the same: whoever merges all shards finds each of them.
+  RunOptions full = options;
+  full.out = folder / "full";
+  full.shard = 3 - options.shard;
+  must_run(plan, full);
+  const auto joined = store::merge({.dirs = {options.out, full.out}, .out = folder / "joined"});
+  REQUIRE_MESSAGE(joined.ok(), to_text(joined.failure()));
+  CHECK(joined->added == 1);
   options = options_for(folder / "run");
   options.suite = "nightly";
   CHECK(refused(options).find("no suite `nightly`; the plan has smoke") != std::string::npos);
