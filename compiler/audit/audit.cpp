@@ -86,6 +86,7 @@ class Auditor {
     PROBE_TRY(find_rules());
     find_questions();
     find_warnings();
+    find_unheld();
     audit_.robots = robots_of(plan_, scope_);
     std::stable_sort(audit_.findings.begin(), audit_.findings.end(),
                      [](const Finding& a, const Finding& b) { return a.kind < b.kind; });
@@ -408,6 +409,27 @@ class Auditor {
       finding.message = std::move(found.message);
       finding.place = place(plan_.span_of(plan::SpanKind::kFamilies, found.family));
       add(std::move(finding));
+    }
+  }
+
+  // What P1202 does not look at.
+  void find_unheld() {
+    std::map<std::string_view, std::vector<const UnheldWords*>> by_task;
+    for (const UnheldWords& one : compilation_.unheld) by_task[one.task].push_back(&one);
+    std::map<std::pair<std::string_view, std::string_view>, std::size_t> known;
+    audit_.heard = scope_.size();
+    for (const std::uint32_t task : scope_) {
+      const auto found = by_task.find(plan_.text(plan_.tasks()[task].name));
+      if (found == by_task.end()) {
+        ++audit_.held;
+        continue;
+      }
+      for (const UnheldWords* one : found->second) {
+        const auto [at, is_new] = known.try_emplace({one->words, one->why}, audit_.unheld.size());
+        if (is_new) audit_.unheld.push_back({one->words, one->why, {}, task_place(task)});
+        std::vector<std::string>& tasks = audit_.unheld[at->second].tasks;
+        if (tasks.empty() || tasks.back() != name_of(task)) tasks.push_back(name_of(task));
+      }
     }
   }
 

@@ -63,11 +63,20 @@ struct Finding {
   std::optional<std::string> allowed;  // the reason of an @allow
 };
 
+// Words of instructions that nothing is held to.
+struct Unheld {
+  std::string words, why;
+  std::vector<std::string> tasks;  // that say them
+  Place place;                     // of the first
+};
+
 struct Audit {
   std::string suite;
   std::size_t tasks = 0, comparisons = 0;  // of the suite
   std::vector<Finding> findings;           // by kind, then in the order of the text
   std::vector<RobotFacts> robots;
+  std::vector<Unheld> unheld;  // in the order of the tasks; empty of a compilation without them
+  std::size_t held = 0, heard = 0;  // tasks all of whose words are held to success, of how many
   std::vector<std::string> unchecked;  // columns of a published table that are no set
 };
 

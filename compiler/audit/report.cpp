@@ -58,6 +58,16 @@ std::string to_text(const Audit& audit) {
     if (finding.allowed) fmt::format_to(out, "    allowed: {}\n", *finding.allowed);
     allowed += finding.allowed ? 1 : 0;
   }
+  if (!audit.unheld.empty()) {
+    fmt::format_to(out, "{}words that nothing is held to\n", audit.findings.empty() ? "" : "\n");
+    for (const Unheld& one : audit.unheld) {
+      fmt::format_to(out, "  \"{}\": {}\n    --> {}:{}:{}\n    in {}\n", one.words, one.why,
+                     one.place.file, one.place.line, one.place.column, list(one.tasks));
+    }
+    fmt::format_to(out, "  of {} of {} tasks all words are held to success\n", audit.held,
+                   audit.heard);
+    if (audit.findings.empty()) text += '\n';
+  }
   if (!audit.unchecked.empty()) {
     fmt::format_to(out, "{}no sets, so not checked: {}\n", audit.findings.empty() ? "" : "\n",
                    fmt::join(audit.unchecked, ", "));
@@ -94,6 +104,17 @@ std::string to_json(const Audit& audit) {
     }
     entry["allowed"] = finding.allowed ? Json(*finding.allowed) : Json();
     json["findings"].push_back(std::move(entry));
+  }
+  json["held"] = audit.held;
+  json["heard"] = audit.heard;
+  json["not_held"] = Json::array();
+  for (const Unheld& one : audit.unheld) {
+    json["not_held"].push_back({{"words", one.words},
+                                {"why", one.why},
+                                {"tasks", one.tasks},
+                                {"file", one.place.file},
+                                {"line", one.place.line},
+                                {"column", one.place.column}});
   }
   for (const RobotFacts& robot : audit.robots) json["robots"].push_back(to_json(robot));
   if (!audit.unchecked.empty()) json["unchecked"] = audit.unchecked;

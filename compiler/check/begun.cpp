@@ -1,4 +1,4 @@
-// P0607: success that is true before anything has moved, in some of a task's starts. A policy that
+// P0607: success that is true before anything has moved, in starts of a task. A policy that
 // does nothing has them. What is not known before things settle, as whether one lies on another,
 // says nothing here.
 #include <algorithm>
@@ -31,7 +31,7 @@ class BegunChecker {
     const auto success = std::find_if(task.judged.begin(), task.judged.end(),
                                       [](const Metric& one) { return one.name == "success"; });
     if (success == task.judged.end() || success->type.kind != TypeKind::kBool ||
-        task.starts.size() < 2 || !task.motions.empty() ||
+        task.starts.empty() || !task.motions.empty() ||
         model_.layouts[task.layout].begins_placed)
       return;
     const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
@@ -45,8 +45,9 @@ class BegunChecker {
     for (std::size_t i = 0; i < task.starts.size(); ++i) {
       if (holds(*program, task, bodies, task.starts[i])) begun.push_back(i);
     }
-    // Of all starts nothing is told apart: that is the metric's own fault, and `audit` finds it.
-    if (begun.empty() || begun.size() == task.starts.size()) return;
+    if (begun.empty()) return;
+    // What has to be so all along begins so.
+    if (begun.size() == task.starts.size() && success->readout == plan::Readout::kAlways) return;
     if (!said_.insert({success->span, task.starts.data()}).second) return;
     report(task, *success, begun);
   }
@@ -113,15 +114,19 @@ class BegunChecker {
   }
 
   void report(const Task& task, const Metric& success, const std::vector<std::size_t>& begun) {
-    std::string which;
-    for (std::size_t i = 0; i < begun.size() && i < kMostNamed; ++i)
+    const bool is_all = begun.size() == task.starts.size();
+    std::string which = is_all ? "" : ": ";
+    for (std::size_t i = 0; !is_all && i < begun.size() && i < kMostNamed; ++i)
       which += (i == 0 ? "" : ", ") + std::to_string(begun[i]);
-    if (begun.size() > kMostNamed) which += " ..";
+    if (!is_all && begun.size() > kMostNamed) which += " ..";
     const About about(reporter_, task.decl_span);
     report_of(reporter_, Code::P0607, task, task.span,
               "`success` of `" + task.name + "` is true before anything moves in " +
-                  std::to_string(begun.size()) + " of " + std::to_string(task.starts.size()) +
-                  " starts: " + which)
+                  (is_all ? begun.size() == 1 ? "its one start"
+                                              : "all of its " + std::to_string(begun.size()) + " starts"
+                          : std::to_string(begun.size()) + " of " +
+                                std::to_string(task.starts.size()) + " starts") +
+                  which)
         .label(success.span, "judged by this")
         .help(
             "place things so that none begins so, or ask for what has to move as well: `.. and "

@@ -49,7 +49,87 @@ class ClauseGoal {
     return place_left_out();
   }
 
+  std::vector<NotHeld> not_held() const {
+    std::vector<NotHeld> found;
+    for (const Clause& clause : clauses_.all) {
+      std::string why = unheld(clause);
+      if (why.empty() && !clause.repeats.empty() && !goal_.forgets)
+        why = "whether success counts how often is not known";
+      if (!why.empty()) found.push_back({clause.words, std::move(why)});
+    }
+    for (const Rank& rank : clauses_.ranks) {
+      const bool is_ordered =
+          std::any_of(goal_.order.begin(), goal_.order.end(), [&](const auto& order) {
+            return shares(order.first, rank.of) || shares(order.second, rank.of);
+          });
+      if (!is_ordered) found.push_back({rank.words, "success wants no order of it"});
+    }
+    for (const Clauses::Left& left : clauses_.left) {
+      if (!left.is_spared || left.of.empty()) {
+        found.push_back({left.words, "not understood"});
+        continue;
+      }
+      for (const ObjectId id : left.of) {
+        if (is_measured(model_, task_, id)) continue;
+        found.push_back({left.words, "no metric measures anything of " + name(id)});
+        break;
+      }
+    }
+    return found;
+  }
+
  private:
+  static bool shares(const Things& a, const Things& b) {
+    return std::any_of(a.begin(), a.end(), [&](ObjectId id) { return b.contains(id); });
+  }
+  bool shares_spoken(const Things& things) const { return shares(things, goal_.spoken); }
+
+  // Why a clause is held to nothing; empty where it is held.
+  std::string unheld(const Clause& clause) const {
+    if (!clause.certain)
+      return clause.stopped.empty() ? "not understood" : "`" + clause.stopped + "` is not understood";
+    Things things;
+    for (const Clause::What& what : clause.what) things.insert(what.of.begin(), what.of.end());
+    const bool moves_joint = clause.does == Does::kOpens || clause.does == Does::kCloses;
+    if (moves_joint) {
+      const Things parts = parts_of(clause);
+      if (parts.empty()) return "no part that a joint moves is called so";
+      const bool is_way = &clause != &clauses_.all.back();
+      const bool has_way = std::any_of(parts.begin(), parts.end(),
+                                       [&](ObjectId id) { return goal_.ways.contains(id); });
+      if (has_way || is_way || goal_.moves_unnamed) return {};
+      return "success measures nothing of how far " + name(*parts.begin()) + " has moved";
+    }
+    if (clause.does == Does::kOther)
+      return clause.goes && is_placed(clause, things) ? "" : "what it asks for is not known";
+    if (clause.does == Does::kTakes) {
+      // The way to where it goes.
+      const bool is_way = std::any_of(&clause + 1, clauses_.all.data() + clauses_.all.size(),
+                                      [](const Clause& later) { return later.does == Does::kPuts; });
+      if (is_way || shares_spoken(things) || goal_.asks_of_all || things.empty()) return {};
+      return "success measures nothing of " + name(*things.begin());
+    }
+    if (!clause.goes) {
+      if (!clause.ground.empty())
+        return "how success measures the " + clause.ground + " is not known";
+      return is_placed(clause, things) ? "" : "it is not said where to";
+    }
+    if (is_placed(clause, things)) return {};
+    if (goal_.asks_of_all) return "success asks something of things that it does not name";
+    if (things.empty() || clause.where.empty()) return "it is not known what goes where";
+    return "success measures " + name(*things.begin()) + " against no such place";
+  }
+  // Whether what a clause moves is measured against where it goes, or one of what it moves against
+  // another.
+  bool is_placed(const Clause& clause, const Things& things) const {
+    Things places = clause.where;
+    if (!clause.goes) places = things;
+    return std::any_of(things.begin(), things.end(), [&](ObjectId thing) {
+      return std::any_of(places.begin(), places.end(),
+                         [&](ObjectId place) { return thing != place && bearing(thing, place); });
+    });
+  }
+
   std::string name(ObjectId id) const { return "`" + model_.objects[id].name + "`"; }
   const std::optional<OfFixture>& of(ObjectId id) const { return model_.objects[id].of; }
   bool is_spoken(ObjectId id) const { return goal_.spoken.contains(id); }
@@ -640,6 +720,11 @@ class ClauseGoal {
 std::optional<std::string> clause_lack(const Model& model, const Task& task, const Clauses& clauses,
                                        const Goal& goal) {
   return ClauseGoal(model, task, clauses, goal).lack();
+}
+
+std::vector<NotHeld> words_not_held(const Model& model, const Task& task, const Clauses& clauses,
+                                    const Goal& goal) {
+  return ClauseGoal(model, task, clauses, goal).not_held();
 }
 
 }  // namespace probe::sema

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compiler/check/clauses.h"
 #include "compiler/check/goal.h"
@@ -15,5 +16,14 @@ namespace probe::sema {
 // it is there, or it is not certain what is meant.
 std::optional<std::string> clause_lack(const Model& model, const Task& task, const Clauses& clauses,
                                        const Goal& goal);
+
+// Words of an instruction that are held to nothing: they were not understood, or success measures
+// nothing that they ask for. Of all other words clause_lack() knows that they fit, or says that they
+// do not.
+struct NotHeld {
+  std::string words, why;
+};
+std::vector<NotHeld> words_not_held(const Model& model, const Task& task, const Clauses& clauses,
+                                    const Goal& goal);
 
 }  // namespace probe::sema

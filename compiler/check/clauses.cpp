@@ -35,6 +35,7 @@ enum class WordIs : std::uint8_t {
   kEach,
   kSome,
   kIs,
+  kWhere,
   kBegins,
   kTurn,
   kRepeats,
@@ -437,6 +438,7 @@ class ClauseReader {
     clause.goes = !pending_.empty();
     pending_.clear();
     while (at_ < words_.size()) {
+      if (aside()) continue;
       if (ends_at(at_) && !is_place(match(at_).is)) break;
       idle(clause);
       const Match word = match(at_);
@@ -478,6 +480,21 @@ class ClauseReader {
     }
     last_ = clause.does;
     out_.all.push_back(std::move(clause));
+  }
+
+  // "Put the cube, not the can, on the tray".
+  bool aside() {
+    if (match(at_).is != WordIs::kDenies || words_[at_].text != "not") return false;
+    const auto other = noun(at_ + 1);
+    if (!other || other->is_place) return false;
+    const WordIs next = match(other->end).is;
+    if (!is_place(next) && next != WordIs::kDenies) return false;
+    Things of;
+    for (const Clause::What& one : other->what) of.insert(one.of.begin(), one.of.end());
+    out_.said.insert(of.begin(), of.end());
+    out_.left.push_back({shown(at_, other->end), std::move(of), true});
+    at_ = other->end;
+    return true;
   }
 
   std::string shown(std::size_t from, std::size_t to) const {
@@ -608,11 +625,26 @@ class ClauseReader {
     return true;
   }
 
+  // "The tray is where the cube should go".
+  bool stated_where(const Noun& place) {
+    const auto what = noun(place.end + match(place.end).length);
+    if (!what || what->is_place || match(what->end).is != WordIs::kIs) return false;
+    const std::size_t from = at_;
+    Clause clause;
+    clause.does = Clause::Does::kPuts;
+    clause.what = what->what;
+    for (const Clause::What& one : place.what) pending_.insert(one.of.begin(), one.of.end());
+    at_ = what->end + match(what->end).length;
+    finish(std::move(clause), from);
+    return true;
+  }
+
   // "The cube should be on the tray", and "the cube on the tray" as all that is said.
   bool stated() {
     const auto what = noun(at_);
     if (!what || what->is_place || ends_at(what->end)) return false;
     const Match is = match(what->end);
+    if (is.is == WordIs::kWhere) return stated_where(*what);
     const bool is_all = at_ == 0 && is_place(is.is) && is.is != WordIs::kFrom &&
                         is.is != WordIs::kWith;
     if (is.is != WordIs::kIs && !is_all) return false;
@@ -639,30 +671,34 @@ class ClauseReader {
     if (!out_.all.empty() && std::find(kBack.begin(), kBack.end(), words_[at_].text) != kBack.end())
       doubt(out_.all.back(), at_);
     const std::size_t from = at_;
+    Things of;
     do {
-      speak(at_);
+      of.merge(speak(at_));
       ++at_;
     } while (at_ < words_.size() && !ends_at(at_) && !joins(match(at_).is) &&
              match(at_).is != WordIs::kSpares && match(at_).is != WordIs::kDenies);
-    out_.left.push_back(shown(from, at_));
+    out_.left.push_back({shown(from, at_), std::move(of), false});
     joined_ = true;
     last_ = Clause::Does::kOther;
   }
 
   void stop() {
     out_.is_whole = false;
-    if (at_ < words_.size()) out_.left.push_back(shown(at_, words_.size()));
-    for (; at_ < words_.size(); ++at_) speak(at_);
+    const std::size_t from = at_;
+    Things of;
+    for (; at_ < words_.size(); ++at_) of.merge(speak(at_));
+    if (from < at_) out_.left.push_back({shown(from, at_), std::move(of), true});
   }
 
-  void speak(std::size_t at) {
+  Things speak(std::size_t at) {
     if (words_[at].is_slot) {
       out_.said.insert(words_[at].of.begin(), words_[at].of.end());
-      return;
+      return words_[at].of;
     }
     if (match(at).is == WordIs::kUnknown) out_.is_pure = false;
-    const Called::Found name = called_.find(texts(at, 5));
+    Called::Found name = called_.find(texts(at, 5));
     out_.said.insert(name.of.begin(), name.of.end());
+    return std::move(name.of);
   }
 
   const Called called_;

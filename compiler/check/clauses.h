@@ -55,7 +55,13 @@ struct Rank {
 struct Clauses {
   std::vector<Clause> all;
   std::vector<Rank> ranks;
-  std::vector<std::string> left;  // words outside of clauses
+  // Words outside of clauses, and of what they speak. `is_spared`: nothing is to be done to it.
+  struct Left {
+    std::string words;
+    Things of;
+    bool is_spared = false;
+  };
+  std::vector<Left> left;
   bool is_whole = true;  // no word of the instruction is outside of them
   Things said;           // all that is spoken of
   // Its words but for slots are those of the tables: it means the same of whatever fills the roles.

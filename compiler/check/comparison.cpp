@@ -1,6 +1,7 @@
 // P07xx: is every variant compared with something that it differs from in one way?
 #include <algorithm>
 #include <bit>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <tuple>
@@ -8,7 +9,9 @@
 
 #include "compiler/check/check.h"
 #include "compiler/define/axes.h"
+#include "compiler/define/starts.h"
 #include "compiler/define/telling.h"
+#include "compiler/define/wording.h"
 
 namespace probe::sema {
 namespace {
@@ -90,6 +93,33 @@ void note_chosen(const Task& task, const Task& baseline, Diagnostic& diagnostic)
                   ": that is the axis layout");
 }
 
+// Whether a mask has nothing but these axes.
+bool only(std::uint32_t mask, std::initializer_list<plan::Axis> axes) {
+  for (const plan::Axis axis : axes) mask &= ~plan::bit(axis);
+  return mask == 0;
+}
+
+// "the left can" against "the right can": the same things in the same places, whichever of them has
+// which role and by whatever phrase. "to the left of the plate" against "to the right of it": the
+// words are the opposites of one another, and success follows them (P1202). Each is one contrast.
+bool is_contrast(const Task& task, const Task& baseline) {
+  using plan::Axis;
+  if (only(task.axes, {Axis::kLanguageAction, Axis::kLanguageSpatial, Axis::kLanguageParaphrase,
+                       Axis::kGoal}))
+    return plan::moves(task.axes, Axis::kGoal) && task.horizon == baseline.horizon &&
+           are_opposites(whole_prompt(task), whole_prompt(baseline));
+  if (!only(task.axes, {Axis::kObjectSource, Axis::kObjectTarget, Axis::kObjectOther,
+                        Axis::kDistractors, Axis::kLanguageAppearance, Axis::kLanguageCommonsense,
+                        Axis::kLanguageSpatial}))
+    return false;
+  std::vector<ObjectId> here = task.objects(), there = baseline.objects();
+  std::ranges::sort(here);
+  std::ranges::sort(there);
+  return here == there && std::ranges::is_permutation(task.part_distractors,
+                                                      baseline.part_distractors) &&
+         task.things() == baseline.things() && start_at_same_places(task, baseline);
+}
+
 void check_edge(const Model& model, const Task& task, Reporter& reporter) {
   const About about(reporter, task.decl_span);
   const Task& baseline = model.tasks[task.baseline];
@@ -107,7 +137,8 @@ void check_edge(const Model& model, const Task& task, Reporter& reporter) {
         "`" + task.name + "` does not differ from its baseline `" + baseline.name + "`");
     return;
   }
-  if (axes == 1) return;
+  // A reason that is given is kept, needed or not.
+  if (axes == 1 || (!task.allow_confounded && is_contrast(task, baseline))) return;
   Diagnostic& diagnostic = reporter.report(
       Code::P0701, task.span,
       "`" + task.name + "` differs from its baseline on " + std::to_string(axes) + " axes");

@@ -170,8 +170,9 @@ bool same_covers(const Scene& a, const Scene& b) {
                     });
 }
 
-// Camera, light, textures and the surface's height are axes of their own.
-bool same_scene(const Model& model, const Scene& a, const Scene& b) {
+// The same robot among the same things. Camera, light, textures and the surface's height are axes of
+// their own.
+bool same_stage(const Model& model, const Scene& a, const Scene& b) {
   const auto joints = [](const Scene& scene) {
     std::vector<double> values;
     for (const Quantity& joint : scene.joints) values.push_back(joint.si());
@@ -183,9 +184,16 @@ bool same_scene(const Model& model, const Scene& a, const Scene& b) {
          text_of(a.fixture) == text_of(b.fixture) &&
          stands_alike(a.fixture_position, a.surface_z, b.fixture_position, b.surface_z) &&
          text_of(a.backdrop) == text_of(b.backdrop) && a.backdrop_stands == b.backdrop_stands &&
-         text_of(main_photo(a)) == text_of(main_photo(b)) && a.physics_hz == b.physics_hz &&
-         a.friction == b.friction && a.air_density == b.air_density &&
-         a.air_viscosity == b.air_viscosity && same_fixtures(model, a, b);
+         text_of(main_photo(a)) == text_of(main_photo(b)) && same_fixtures(model, a, b);
+}
+
+bool same_physics(const Scene& a, const Scene& b) {
+  return a.physics_hz == b.physics_hz && a.friction == b.friction &&
+         a.air_density == b.air_density && a.air_viscosity == b.air_viscosity;
+}
+
+bool same_scene(const Model& model, const Scene& a, const Scene& b) {
+  return same_physics(a, b) && same_stage(model, a, b);
 }
 
 bool is_same_place(const Model& model, const Scene& a, const Scene& b) {
@@ -287,8 +295,10 @@ class Comparison {
       : model_(model),
         task_(task),
         baseline_(baseline),
-        scene_moves_(task.scene != baseline.scene &&
-                     !same_scene(model, model.scenes[task.scene], model.scenes[baseline.scene])) {}
+        stage_moves_(task.scene != baseline.scene &&
+                     !same_stage(model, model.scenes[task.scene], model.scenes[baseline.scene])),
+        scene_moves_(stage_moves_ || !same_physics(model.scenes[task.scene],
+                                                   model.scenes[baseline.scene])) {}
 
   bool moves(plan::Axis axis) const {
     switch (axis) {
@@ -321,22 +331,22 @@ class Comparison {
       case plan::Axis::kScene:
         return scene_moves_;
       case plan::Axis::kSceneTexture:
-        return !scene_moves_ && !same_covers(scene(task_), scene(baseline_));
+        return !stage_moves_ && !same_covers(scene(task_), scene(baseline_));
       case plan::Axis::kSceneGeometry:
-        return !scene_moves_ && scene(task_).surface_z != scene(baseline_).surface_z;
+        return !stage_moves_ && scene(task_).surface_z != scene(baseline_).surface_z;
       // Another scene's joints begin where they do.
       case plan::Axis::kFixture:
-        return !scene_moves_ &&
+        return !stage_moves_ &&
                joint_starts_in_all(model_, task_) != joint_starts_in_all(model_, baseline_);
       // Another scene comes with its own camera and light; only an override makes them a change of
-      // their own.
+      // their own. One of other friction alone does not.
       case plan::Axis::kLight:
-        return (!scene_moves_ || task_.light != LightId::kNone ||
+        return (!stage_moves_ || task_.light != LightId::kNone ||
                 baseline_.light != LightId::kNone) &&
                !(model_.lights[light_of(model_, task_)] ==
                  model_.lights[light_of(model_, baseline_)]);
       case plan::Axis::kCamera:
-        return (!scene_moves_ || !task_.cameras.empty() || !baseline_.cameras.empty()) &&
+        return (!stage_moves_ || !task_.cameras.empty() || !baseline_.cameras.empty()) &&
                !same_cameras(model_, task_, baseline_);
       case plan::Axis::kSensor:
         return !same_sensors(model_, task_, baseline_);
@@ -382,6 +392,7 @@ class Comparison {
   const Model& model_;
   const Task& task_;
   const Task& baseline_;
+  bool stage_moves_;  // other things stand there: nothing else of the scene is told apart
   bool scene_moves_;
 };
 

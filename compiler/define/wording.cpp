@@ -204,6 +204,18 @@ std::string opposite_in(const std::string& text, const std::vector<std::string>&
   return {};
 }
 
+bool are_opposites(std::string_view a, std::string_view b) {
+  const std::vector<std::string> here = literal_words(std::string(a)),
+                                 there = literal_words(std::string(b));
+  bool differs = false;
+  const auto fits = [&](const std::string& one, const std::string& other) {
+    const std::string p = plain(one), q = plain(other);
+    differs = differs || p != q;
+    return p == q || is_pair(kOpposites, p, q);
+  };
+  return std::ranges::equal(here, there, fits) && differs;
+}
+
 bool has_opposite(const std::vector<std::string>& words) {
   return std::ranges::any_of(words, [](const std::string& own) {
     const std::vector<std::string> parts = literal_words(own);

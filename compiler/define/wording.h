@@ -45,6 +45,10 @@ std::string opposite_in(const std::string& text, const std::vector<std::string>&
 // Whether one of these words is of a pair of opposites.
 bool has_opposite(const std::vector<std::string>& words);
 
+// Whether two texts say the same but for words that are opposites in one place: "to the left of the
+// plate", "to the right of the plate".
+bool are_opposites(std::string_view a, std::string_view b);
+
 // What a template says, word by word, in lower case, without articles and the signs around words;
 // a slot is one word: "{source}", "{avoid towel}".
 std::vector<std::string> sentence_of(const Template& say);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "compiler/check/analyze.h"
+#include "compiler/check/held.h"
 #include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/emit/analyzed.h"
@@ -127,6 +128,11 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   out.compilation.referring = referring_words(out.model);
   for (const sema::Object& object : out.model.objects)
     out.compilation.called.emplace(object.name, object.text.text);
+  for (const sema::Task& task : out.model.tasks) {
+    if (!options.wants_unheld || task.abstract || !task.complete) continue;
+    for (sema::NotHeld& one : sema::not_held(out.model, task))
+      out.compilation.unheld.push_back({task.name, std::move(one.words), std::move(one.why)});
+  }
   const auto behind_used = std::stable_partition(
       out.model.suites.begin(), out.model.suites.end(), [&](const sema::Suite& suite) {
         return std::find(named.begin(), named.end(), suite.span.file) != named.end();

@@ -33,12 +33,18 @@ struct CompileOptions {
   const std::atomic<bool>* stop = nullptr;  // once it is true, the answer is not wanted any more
   // The tasks to keep, by name; none: all. For assets that do not serve every task.
   std::function<bool(std::string_view)> wants_task = {};
+  bool wants_unheld = false;  // Compilation::unheld
 };
 
 // Words of a task's instruction and the object that they mean.
 struct ReferringWords {
   std::string task, words, object;
   bool is_phrase = false;  // a phrase of the object; else its name
+};
+
+// Words of an instruction that are held to nothing that success measures, and why.
+struct UnheldWords {
+  std::string task, words, why;
 };
 
 struct Compilation {
@@ -52,6 +58,7 @@ struct Compilation {
   // "object.phrase" of the objects of some task by which no concrete task refers.
   std::vector<std::string> unused_phrases = {};
   std::vector<ReferringWords> referring;  // of every concrete task, source before target
+  std::vector<UnheldWords> unheld;        // of every concrete task, where it was asked for
   // What the objects are called when no phrase is chosen, by name.
   std::map<std::string, std::string> called;
   // How much was looked at: tasks that are no pattern and lack nothing, and their starts.

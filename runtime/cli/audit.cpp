@@ -26,7 +26,8 @@ int audit_verb(const AuditArguments& arguments) {
   const auto library = compile::find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
   const std::span<const std::string> files(&arguments.file, 1);
-  auto compiled = build(files, {.asset_root = *root, .library_folders = *library});
+  auto compiled = build(
+      files, {.asset_root = *root, .library_folders = *library, .wants_unheld = true});
   if (!compiled) return report(compiled.failure());
   if (!compiled->ok) {
     say("{}", render_text(compiled->diagnostics, compiled->sources));

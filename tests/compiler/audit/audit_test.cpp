@@ -41,7 +41,8 @@ Audited audit_file(const std::string& file) {
   const std::span<const std::string> files(&file, 1);
   auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
                                 .suite = "",
-                                .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
+                                .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"},
+                                .wants_unheld = true});
   REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
   REQUIRE_MESSAGE(compiled->ok, render_text(compiled->diagnostics, compiled->sources));
   auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
@@ -443,4 +444,38 @@ suite own trained on bridge_v2 {
   REQUIRE(coin != nullptr);
   CHECK(coin->place.line > 0);
   CHECK(to_json(found.audit).find("\"names_answer\"") != std::string::npos);
+}
+
+TEST_CASE("words that nothing is held to are listed with the reason, and counted") {
+  const Audited own = audit_text(R"(
+variant kind of carrot_on_plate { say "gently put {the source} on {the target}" }
+variant odd of carrot_on_plate { say "put {the source} kind of on {the target}" }
+variant covers of carrot_on_plate { say "cover {the source} with {the target}" }
+variant touched of carrot_on_plate { say "push {the source}" }
+variant plain of carrot_on_plate { say "lay {the source} on {the target}" }
+suite own trained on bridge_v2 { tasks { kind, odd, covers, touched, plain }; seeds 42 }
+)");
+  const auto why = [&](const std::string& task) {
+    std::string text;
+    for (const audit::Unheld& one : own.audit.unheld) {
+      if (std::ranges::find(one.tasks, task) != one.tasks.end())
+        text += (text.empty() ? "" : " | ") + one.words + ": " + one.why;
+    }
+    return text;
+  };
+  CHECK(why("plain") == "");
+  CHECK(why("kind") == "gently: how it is done is measured by nothing");
+  CHECK(why("odd") == "put the carrot: `kind` is not understood | kind of on the plate: not understood");
+  CHECK(why("covers") == "cover the carrot with the plate: not understood");
+  CHECK(why("touched") == "push the carrot: what it asks for is not known");
+  CHECK(own.audit.held == 1);
+  CHECK(own.audit.heard == 5);
+  CHECK(to_text(own.audit).find("  of 1 of 5 tasks all words are held to success\n") !=
+        std::string::npos);
+  const auto json = Json::parse(to_json(own.audit));
+  CHECK(json["held"] == 1);
+  CHECK(json["not_held"].size() == 5);
+  CHECK(json["not_held"][0]["line"].get<int>() > 0);
+  // Of the suite as published next to all.
+  CHECK(published().audit.held + 3 >= published().audit.heard);
 }

@@ -54,3 +54,19 @@ TEST_CASE("a joint that begins where it shall be counts as well") {
   CHECK(begun_of("(travel(chest.slide) > 3cm and x(source) < x(target))", "; scene room")
             .find(kSome) == 0);
 }
+
+TEST_CASE("success that holds in all starts is told as well, but for what has to hold throughout") {
+  CHECK(begun_of("moved_xy(source) < 1cm") == std::string(kSome) + "all of its 24 starts");
+  CHECK(begun_of("(x(source) < x(target) + 90cm and moved_xy(source) <= 1cm)") ==
+        std::string(kSome) + "all of its 24 starts");
+  const auto throughout = test::analyze_with_suite(
+      "metrics m { success = always moved_xy(target) < 1cm }\n"
+      "task t like red_on_tray { metrics m; say \"use {the source} and {the target}\" }\n");
+  CHECK_MESSAGE(throughout->codes() == "", throughout->said());
+  const auto alone = test::analyze_with_suite(
+      "metrics m { success = at end moved_xy(source) < 1cm }\n"
+      "layout one { place source at (0cm, -20cm); place target at (0cm, 0cm); orient by rest\n"
+      "drop 10cm settle 0.5s }\n"
+      "task t like red_on_tray { layout one; metrics m; say \"use {the source} and {the target}\" }\n");
+  CHECK_MESSAGE(alone->said().find("before anything moves in ") != std::string::npos, alone->said());
+}

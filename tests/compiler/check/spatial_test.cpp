@@ -122,7 +122,7 @@ TEST_CASE("metrics judge a relation as any predicate, but for the rest of a phra
                                     " }\ntask t like base { layout row; source sided; target tray; "
                                     "distractors blue; metrics m }");
   };
-  CHECK(judged("left_of(source, target)")->said() == "");
+  CHECK(judged("(left_of(source, target) and moved_xy(source) > 1cm)")->said() == "");
 }
 
 TEST_CASE("a relation measures what is known of a start, of objects alone, and has its words") {

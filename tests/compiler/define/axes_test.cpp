@@ -57,6 +57,27 @@ variant article of red_on_tray { say "put {the source} on {target}"; light night
   CHECK(axes(a->task("article")) == "light");
 }
 
+TEST_CASE("a scene of other friction moves its light and its height beside itself, a scene of other things does not") {
+  const auto a = analyze_with_suite(R"(
+scene slippery like bench { physics 500Hz friction 0.2 }
+scene all_at_once like bench {
+  physics 500Hz friction 0.2; light night; surface 90cm area (-50cm, -50cm) .. (50cm, 50cm)
+}
+scene wider like bench {
+  physics 500Hz friction 0.2; light night; surface 90cm area (-45cm, -45cm) .. (45cm, 45cm)
+}
+variants of red_on_tray {
+  everything { scene all_at_once }
+  smooth { scene slippery }
+  wide { scene wider }
+}
+)");
+  CHECK_MESSAGE(a->codes() == "P0701", a->said());
+  CHECK(axes(a->task("smooth")) == "scene");
+  CHECK(axes(a->task("everything")) == "scene scene.geometry light");
+  CHECK(axes(a->task("wide")) == "scene");
+}
+
 TEST_CASE("other words in the same verb frame are a paraphrase, articles and named roles are not") {
   const auto a = analyze_with_suite(R"(
 template gently frame put "put {the source} down on top of {the target}"
@@ -116,8 +137,8 @@ TEST_CASE("what is heard, seen and judged alike is one experiment, whatever decl
 
 TEST_CASE("metrics that say the same are one goal, wherever they stand") {
   const auto a = analyze_with_suite(R"(
-predicate up_high(o: object, least: length = 5cm) = height(o) > least
-predicate far_up(o: object, least: length = 5cm) = height(o) > least
+predicate up_high(o: object, least: length = 5cm) = height(o) > height(start(o)) + least
+predicate far_up(o: object, least: length = 5cm) = height(o) > height(start(o)) + least
 metrics one { success = at end (up_high(source) and no x in distractors: up_high(x, 50mm)) }
 metrics two { success = at end (far_up(source) and no x in distractors: far_up(x, 5cm)) }
 metrics three { success = at end (far_up(source) and far_up(target) and no x in distractors: far_up(x, 5cm)) }
