@@ -19,7 +19,7 @@ constexpr auto kManners =
 
 }  // namespace
 
-std::vector<NotHeld> not_held(const Model& model, const Task& task) {
+std::vector<NotHeld> not_held(const Model& model, const Task& task, Callings& callings) {
   std::vector<NotHeld> found;
   std::size_t sentence = 0;
   for_each_telling(task, [&](const Task& told) {
@@ -31,7 +31,8 @@ std::vector<NotHeld> not_held(const Model& model, const Task& task) {
       found.push_back({told.prompt, "another sentence follows"});
       return;
     }
-    for (NotHeld& one : words_not_held(model, told, clauses_of(model, told), goal_of(model, told)))
+    const Clauses clauses = clauses_of(model, told, callings);
+    for (NotHeld& one : words_not_held(model, told, clauses, goal_of(model, told)))
       found.push_back(std::move(one));
     for (const std::string_view word : kManners) {
       for (const Template::Part& part : say.parts) {

@@ -5,12 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "compiler/check/called.h"
 #include "compiler/check/clause_goal.h"
 #include "compiler/model/model.h"
 
 namespace probe::sema {
 
 // In: a complete task. Of several sentences each.
-std::vector<NotHeld> not_held(const Model& model, const Task& task);
+std::vector<NotHeld> not_held(const Model& model, const Task& task, Callings& callings);
 
 }  // namespace probe::sema

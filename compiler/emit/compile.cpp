@@ -128,9 +128,10 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
   out.compilation.referring = referring_words(out.model);
   for (const sema::Object& object : out.model.objects)
     out.compilation.called.emplace(object.name, object.text.text);
+  sema::Callings callings(out.model);
   for (const sema::Task& task : out.model.tasks) {
     if (!options.wants_unheld || task.abstract || !task.complete) continue;
-    for (sema::NotHeld& one : sema::not_held(out.model, task))
+    for (sema::NotHeld& one : sema::not_held(out.model, task, callings))
       out.compilation.unheld.push_back({task.name, std::move(one.words), std::move(one.why)});
   }
   const auto behind_used = std::stable_partition(
