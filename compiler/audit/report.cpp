@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "compiler/audit/audit.h"
+#include "runtime/base/counted.h"
 #include "runtime/base/json.h"
 
 namespace probe::audit {
@@ -64,8 +65,8 @@ std::string to_text(const Audit& audit) {
       fmt::format_to(out, "  \"{}\": {}\n    --> {}:{}:{}\n    in {}\n", one.words, one.why,
                      one.place.file, one.place.line, one.place.column, list(one.tasks));
     }
-    fmt::format_to(out, "  of {} of {} tasks all words are held to success\n", audit.held,
-                   audit.heard);
+    fmt::format_to(out, "  of {} of {} all words are held to success\n", audit.held,
+                   counted(audit.heard, "task"));
     if (audit.findings.empty()) text += '\n';
   }
   if (!audit.unchecked.empty()) {
@@ -74,12 +75,13 @@ std::string to_text(const Audit& audit) {
   }
   if (!audit.findings.empty()) text += '\n';
   for (const RobotFacts& robot : audit.robots) text += to_text(robot) + '\n';
-  fmt::format_to(out, "suite `{}`, {} tasks, {} comparisons: {}\n", audit.suite, audit.tasks,
-                 audit.comparisons,
+  fmt::format_to(out, "suite `{}`, {}, {}: {}\n", audit.suite, counted(audit.tasks, "task"),
+                 counted(audit.comparisons, "comparison"),
                  audit.findings.empty()
                      ? "nothing irregular"
-                     : fmt::format("{} irregularities, {} of them allowed with a reason",
-                                   audit.findings.size(), allowed));
+                     : fmt::format("{} {}, {} of them allowed with a reason", audit.findings.size(),
+                                   audit.findings.size() == 1 ? "irregularity" : "irregularities",
+                                   allowed));
   return text;
 }
 

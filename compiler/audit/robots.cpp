@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "runtime/base/counted.h"
 #include "runtime/plan/axes.h"
 #include "runtime/robot/laws.h"
 
@@ -58,7 +59,7 @@ std::string from_to(double low, double high) {
 }
 
 std::string reach_text(const RobotFacts& robot) {
-  std::string text = fmt::format("{} starts of {} tasks", robot.starts, robot.tasks);
+  std::string text = counted(robot.starts, "start") + " of " + counted(robot.tasks, "task");
   if (robot.farthest > 0)
     text += ", objects " + from_to(robot.nearest, robot.farthest) + " from its base";
   return robot.reach

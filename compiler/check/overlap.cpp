@@ -1,5 +1,6 @@
 // P0501: two footprints in one another, in any start.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -31,6 +32,19 @@ const Cells::Spread* spread_of(const Layout& layout, const Start::Placed& a,
   return nullptr;
 }
 
+// Whether the cells of a grid that is so much wider, about its middle, are still over the surface.
+bool fits_surface(const TaskStarts& starts, const std::vector<Cell>& grid, double factor) {
+  const std::array<double, 4>& area = starts.model.scenes[starts.task.scene].area;
+  double x = 0, y = 0;
+  for (const Cell& cell : grid) x += cell.x, y += cell.y;
+  const auto number = static_cast<double>(grid.size());
+  x /= number, y /= number;
+  return std::ranges::all_of(grid, [&](const Cell& cell) {
+    const double at_x = x + (cell.x - x) * factor, at_y = y + (cell.y - y) * factor;
+    return at_x >= area[0] && at_x <= area[2] && at_y >= area[1] && at_y <= area[3];
+  });
+}
+
 // At each spread that is too small, the least of the same shape at which nothing overlaps.
 // Nothing is said when something overlaps that a spread does not move apart.
 bool advise_spread(const TaskStarts& starts, Diagnostic& said) {
@@ -52,9 +66,16 @@ bool advise_spread(const TaskStarts& starts, Diagnostic& said) {
     }
   }
   for (const Cells& cells : starts.layout.cells) {
-    for (const Cells::Spread& spread : cells.spreads) {
+    for (std::size_t g = 0; g < cells.spreads.size(); ++g) {
+      const Cells::Spread& spread = cells.spreads[g];
       const auto found = factors.find(&spread);
       if (found == factors.end()) continue;
+      if (!fits_surface(starts, cells.grids[g], found->second)) {
+        said.label(spread.span,
+                   "however wide, these objects do not fit: what would be enough reaches over the "
+                   "edge of the surface");
+        continue;
+      }
       const std::string x = millimetre_up(spread.x * found->second);
       const std::string y = millimetre_up(spread.y * found->second);
       said.label(spread.span,

@@ -2,6 +2,7 @@
 // boxes here: collision hulls are not known to the compiler.
 #include "compiler/check/starts.h"
 
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <utility>
@@ -40,7 +41,8 @@ std::string cause_of(const Span& place, std::initializer_list<std::string_view> 
 
 std::string centimetres(double metres) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4gcm", metres * 100);
+  // What rounding leaves below nothing has no sign.
+  std::snprintf(text, sizeof text, "%.4gcm", std::abs(metres) < 5e-7 ? 0.0 : metres * 100);
   return text;
 }
 

@@ -287,7 +287,11 @@ void outside(Context& context, const Span& span, const Fixture::Joint& joint, do
       .report(Situation::kJointLimit, span,
               fmt::format("joint `{}` starts at {:.6g}, beyond its limits of {:.6g} and {:.6g}",
                           joint.name, position, joint.lower, joint.upper))
-      .point(joint.slides ? "in m" : "in rad");
+      .point(joint.slides ? "in m" : "in rad")
+      .help(joint.slides ? fmt::format("it may start at {:.6g}cm to {:.6g}cm", joint.lower * 100,
+                                       joint.upper * 100)
+                         : fmt::format("it may start at {:.6g}rad to {:.6g}rad", joint.lower,
+                                       joint.upper));
 }
 
 void read_description(Context& context, Fixture& fixture) {

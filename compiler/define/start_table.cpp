@@ -163,8 +163,11 @@ class StartTable {
     const double length = std::sqrt(squares);
     if (!(std::abs(length - 1) <= kUnitWithin)) {
       const Span span = join(cells[*at_[kQw]].span, cells[*at_[kQz]].span);
-      context_.report(Situation::kNotUnit, span,
-                      "a quaternion has length 1, this one " + std::to_string(length));
+      Diagnostic& said = context_.report(Situation::kNotUnit, span,
+                                         fmt::format("a quaternion has length 1, this one {:.6f}", length));
+      if (length > 0)
+        said.help(fmt::format("divided by its length it is {:.6g},{:.6g},{:.6g},{:.6g}", q[0] / length,
+                              q[1] / length, q[2] / length, q[3] / length));
       return std::nullopt;
     }
     for (double& value : q) value /= length;
@@ -193,7 +196,8 @@ class StartTable {
         context_
             .report(Situation::kStartLacks, begins_[number],
                     "start " + std::to_string(number) + " has no `" + missing->what.text + "`")
-            .label(missing->what.span, "start " + std::to_string(other) + " has");
+            .label(missing->what.span, "start " + std::to_string(other) + " has")
+            .help("add a row for `" + missing->what.text + "` to start " + std::to_string(number));
         return false;
       }
     }

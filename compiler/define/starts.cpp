@@ -391,10 +391,12 @@ void report_problem(Context& context, const Task& task, const LayoutProblem& pro
   const bool like_is_fine =
       task.like != TaskId::kNone && !context.model.tasks[task.like].starts.empty();
   const bool is_newcomer = like_is_fine && is_within(task.distractors_span, task.decl_span);
-  context
-      .report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
-              problem.message + " in `" + task.name + "`")
-      .label(problem.span, std::string(problem.label));
+  Diagnostic& said =
+      context.report(problem.what, is_newcomer ? task.distractors_span : task.layout_span,
+                     problem.message + " in `" + task.name + "`");
+  said.label(problem.span, std::string(problem.label));
+  if (problem.what == Situation::kStartLacks)
+    said.help("each start of the table has a row for every object of the task, by its name or its role");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "runtime/assets/output_file.h"
+#include "runtime/base/counted.h"
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
@@ -80,9 +81,9 @@ void add_build(Verb app, int& exit) {
     }
     put("{}\n", to_hex(plan->root()));
     const std::size_t more = only_baselines(*plan, arguments->suite);
-    say("{}: {} tasks{}, {} episodes{}, {} bytes\n", arguments->out, plan->tasks().size(),
+    say("{}: {}{}, {}{}, {} bytes\n", arguments->out, counted(plan->tasks().size(), "task"),
         more == 0 ? "" : fmt::format(", {} of them only baselines of the others", more),
-        plan->episodes().size(), drawn_text(*plan), plan->bytes().size());
+        counted(plan->episodes().size(), "episode"), drawn_text(*plan), plan->bytes().size());
   });
 }
 

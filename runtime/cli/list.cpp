@@ -4,6 +4,7 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/base/asset_root.h"
+#include "runtime/base/counted.h"
 #include "runtime/base/say.h"
 #include "runtime/compile/library.h"
 #include "runtime/cli/load.h"
@@ -34,8 +35,8 @@ int count_text(const ListArguments& arguments) {
   if (!compilation.ok) return kUser;
   const Json numbers = {{"tasks", counted->counts.tasks}, {"episodes", counted->counts.episodes}};
   put("{}", arguments.json ? numbers.dump() + "\n"
-                           : fmt::format("{} tasks, {} episodes\n", counted->counts.tasks,
-                                         counted->counts.episodes));
+                           : probe::counted(counted->counts.tasks, "task") + ", " +
+                                 probe::counted(counted->counts.episodes, "episode") + "\n");
   return kFine;
 }
 
@@ -67,8 +68,8 @@ int list_verb(const ListArguments& arguments) {
   const plan::SuiteRecord* suite = of ? &loaded.plan->suites()[*of] : nullptr;
   const Json count = inspect::count(*loaded.plan, *tasks, suite);
   const std::string summary =
-      fmt::format("{} tasks, {} episodes\n", count["tasks"].get<std::size_t>(),
-                  count["episodes"].get<std::size_t>());
+      counted(count["tasks"].get<std::size_t>(), "task") + ", " +
+      counted(count["episodes"].get<std::size_t>(), "episode") + "\n";
   if (arguments.count) {
     put("{}", arguments.json ? count.dump() + "\n" : summary);
     return kFine;

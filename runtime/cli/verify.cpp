@@ -4,6 +4,7 @@
 #include <cstring>
 #include <set>
 
+#include "runtime/base/counted.h"
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/load.h"
@@ -78,8 +79,8 @@ int verify_verb(const VerifyArguments& arguments) {
   } else {
     put("{}\n", to_hex(plan->root()));
   }
-  say("{}: good, {} tasks, {} episodes, {} bytes\n", arguments.file, plan->tasks().size(),
-      plan->episodes().size(), plan->bytes().size());
+  say("{}: good, {}, {}, {} bytes\n", arguments.file, counted(plan->tasks().size(), "task"),
+      counted(plan->episodes().size(), "episode"), plan->bytes().size());
   say("  envelope  {} sections as long as they say, with the SHA-256 they say\n",
       directory(*plan).size());
   say("  tables    every index, text and number\n");

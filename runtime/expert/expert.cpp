@@ -12,6 +12,7 @@
 #include "runtime/expert/away.h"
 #include "runtime/expert/joint_actions.h"
 #include "runtime/expert/joint_skill.h"
+#include "runtime/expert/open_first.h"
 #include "runtime/expert/pick_place.h"
 #include "runtime/expert/put_spot.h"
 #include "runtime/expert/put_under.h"
@@ -210,6 +211,7 @@ class Expert final : public policy::Policy {
     std::vector<policy::Skill> skills = view.solution;
     // What only reaches goes to the first thing that is done something with.
     if (!options_.close && !skills.empty()) skills.resize(1);
+    if (options_.close && options_.source == 0) skills = opened_first(view, std::move(skills));
     return tidied(view, std::move(skills));
   }
   // The skill that is being done.

@@ -132,3 +132,29 @@ TEST_CASE("the library compiles and shares no name with the suite") {
                    "cleared { metrics clearing; say move_away }\ngone { metrics reaching } }\n");
   CHECK_MESSAGE(both.ok, render_text(both.diagnostics, both.sources));
 }
+
+TEST_CASE("the reference lists what the suite declares for others to use") {
+  const std::string page = read(kRoot / "dsl/reference.md");
+  struct Listed {
+    const char* file;
+    const char* word;
+  };
+  for (const Listed& one : {Listed{"catalog", "object"}, Listed{"manipulation", "predicate"},
+                            Listed{"manipulation", "metrics"}, Listed{"language", "template"},
+                            Listed{"layouts", "layout"}, Listed{"stage", "scene"},
+                            Listed{"stage", "light"}}) {
+    const std::string file = "suite/" + std::string(one.file) + ".probe";
+    const std::size_t from = page.find("s | `" + file + "` | ");
+    REQUIRE_MESSAGE(from != std::string::npos, file);
+    std::istringstream lines(read(kRoot / file));
+    for (std::string line; std::getline(lines, line);) {
+      const std::string begin = std::string(one.word) + " ";
+      if (!line.starts_with(begin)) continue;
+      const std::string name =
+          line.substr(begin.size(), line.find_first_of(" ({", begin.size()) - begin.size());
+      const bool is_listed = page.find("`" + name + "`", from) != std::string::npos ||
+                             page.find("`" + name + "(", from) != std::string::npos;
+      CHECK_MESSAGE(is_listed, file << ": " << name);
+    }
+  }
+}

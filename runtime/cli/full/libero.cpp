@@ -1,5 +1,6 @@
 // vlaprobe libero import, vlaprobe libero fidelity
 #include "runtime/base/asset_root.h"
+#include "runtime/base/counted.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/libero/fidelity.h"
@@ -15,8 +16,8 @@ int import_libero(libero::ImportOptions& options) {
   const auto imported = libero::import_libero(options);
   if (!imported) return report(imported.failure());
   for (const libero::ImportLine& line : imported->lines) put("{:<8} {}\n", line.word, line.text);
-  say("{}: {} tasks, {} starts; {} files, {:.1f} MB\n", options.to, imported->tasks,
-      imported->starts, imported->files, static_cast<double>(imported->bytes) / 1e6);
+  say("{}: {}, {}; {} files, {:.1f} MB\n", options.to, counted(imported->tasks, "task"),
+      counted(imported->starts, "start"), imported->files, static_cast<double>(imported->bytes) / 1e6);
   if (imported->broken > 0) {
     say("vlaprobe: {}: the lines above that begin with `broken` are errors of the texts\n",
         options.to);

@@ -21,6 +21,11 @@ TEST_CASE("audit says what is irregular in the published suite, with places and 
   const auto json = probe::Json::parse(box.vlaprobe("audit $SUITE --json").out);
   REQUIRE_FALSE(json.is_discarded());
   CHECK(json["findings"].size() >= 20);
+  // What nothing is held to, with how many tasks are held whole.
+  CHECK(contains(text.out, "words that nothing is held to\n"));
+  CHECK(contains(text.out, "elsewhere"));
+  CHECK(json["held"].get<int>() < json["heard"].get<int>());
+  CHECK_FALSE(json["not_held"].empty());
 }
 
 TEST_CASE("audit says so when nothing is irregular, and refuses what is no suite") {
