@@ -28,7 +28,7 @@ bool is_closed(const policy::PrivilegedFixture::Joint& joint) {
 // What stands about an object and slides or turns open; -1 for nothing.
 int closed_about(const policy::Privileged& view, int object) {
   const auto& thing = view.objects[static_cast<std::size_t>(object)];
-  const Vec3 at = thing.pose.apply(thing.center_of_mass);
+  const Vec3 at = thing.pose.apply(thing.center_of_mass.value_or(Vec3::Zero()));
   for (std::size_t i = 0; i < view.fixtures.size(); ++i) {
     const policy::PrivilegedFixture& part = view.fixtures[i];
     if (part.joint && part.joint->slides && is_closed(*part.joint) && is_within(part, at))
