@@ -96,9 +96,6 @@ void add_array_options(Verb verb, ArrayArguments& arguments) {
   verb.add_option("--server-wait", arguments.script.server_wait_s,
                   "seconds until a server answers (600)")
       .between(1, 86400);
-  verb.add_option("--server-sbatch", arguments.script.server_sbatch,
-                  "one server for all tasks on a node of its own, {host} in P: an option of sbatch "
-                  "for it, as --server-sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--sbatch", arguments.script.sbatch,
                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--program", arguments.script.program, "path of vlaprobe on the nodes");
@@ -116,6 +113,8 @@ void add_slurm(Verb app, int& exit) {
       "           --policy 'openpi://127.0.0.1:{port}' --server-command 'serve --port {port}'");
   add_run_options(verb, arguments->run);
   add_array_options(verb, *arguments);
+  verb.add_option("--server-sbatch", arguments->script.server_sbatch,
+                  "one server for all, on a node of its own, {host} in P: an option of sbatch for it");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_verb(*arguments); });
 }
