@@ -166,6 +166,12 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
     strings.push_back(printable(benchmark.remarks[static_cast<std::size_t>(episodes[i].remark)],
                                 kLongestRemark));
   }
+  Json told = Json::object();
+  for (std::size_t i = 0; i < episodes.size(); ++i) {
+    if (episodes[i].row == kAbsent) continue;
+    const auto& at = benchmark.rows[static_cast<std::size_t>(episodes[i].row)].told_at;
+    if (at) told[std::to_string(i)] = *at;
+  }
   // The page asks for none of them.
   if (!packs) {
     Json hashes = Json::array();
@@ -191,6 +197,7 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
   }
   if (!more_bits.empty()) columns["more_bits"] = std::move(more_bits);
   if (!remarks.empty()) columns["remarks"] = std::move(remarks);
+  if (!told.empty()) columns["told"] = std::move(told);
   if (!numbers.empty()) columns["numbers"] = std::move(numbers);
   return columns;
 }

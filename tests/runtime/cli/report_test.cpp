@@ -150,3 +150,26 @@ TEST_CASE("a policy's name is a line of text") {
     CHECK(refused.err.find('\x1b') == std::string::npos);
   }
 }
+
+TEST_CASE("a report says in which step a later sentence was said, and which never was") {
+  const Sandbox box;
+  write_file(box / "turns.probe",
+             "use \"" VLAPROBE_SOURCE_DIR
+             "/suite/intact.probe\"\n"
+             "task in_turn like carrot_on_plate {\n"
+             "  horizon 12 steps\n"
+             "  then say drop_on when step >= 3\n"
+             "  then say put when grasped(source)\n"
+             "}\n"
+             "suite mine trained on bridge_v2 { tasks { in_turn }; seeds 1 }\n");
+  const Outcome ran = box.vlaprobe("run turns.probe --suite mine --episodes 0-0 --policy null -o run");
+  REQUIRE_MESSAGE(ran.exit == 0, ran.err);
+  const Outcome told = box.vlaprobe("report run --json");
+  REQUIRE_MESSAGE(told.exit == 0, told.err);
+  std::string text = told.out;
+  std::erase_if(text, [](char c) { return c == ' ' || c == '\n'; });
+  CHECK_MESSAGE(contains(text, "\"told\":{\"0\":[4]}"), told.out);
+  // What no episode came to is a finding of the delivery.
+  CHECK(contains(told.out, "was said in none of 1 episode"));
+  CHECK(box.vlaprobe("report run -o page.html").exit == 0);
+}

@@ -21,7 +21,7 @@ export interface Task {
 export type Column = ArrayLike<number>;
 export interface Episodes {
   count: number; policy: Column; task: Column; start: Column; seed: Column; bits: Column; more_bits?: Column[]; steps: Column;
-  reason: Column; prompt: Column; video?: Column; remarks?: Record<string, number>; numbers?: Record<string, (number | null)[]>;
+  reason: Column; prompt: Column; video?: Column; remarks?: Record<string, number>; told?: Record<string, number[]>; numbers?: Record<string, (number | null)[]>;
 }
 // All that a task says, in one line.
 export function instruction(task: Task): string {

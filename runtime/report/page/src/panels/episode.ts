@@ -128,6 +128,9 @@ function whyView(list: WhyMetric[], strings: string[]): Child {
 }
 
 // A command to copy; dragging over it takes all of it.
+// In which step a sentence behind the first was said, of an episode that is known so well.
+const saidWhen = (told: number[] | undefined, k: number): string => (told === undefined ? "later, once its condition held: " : k < told.length ? `from step ${told[k]} on: ` : "never said, as its condition never held: ");
+
 function command(text: string): HTMLElement {
   const code = h("code", { class: "long command", tabindex: 0 }, text);
   const button = h("button", { type: "button", click: () => {
@@ -169,13 +172,14 @@ export function episodeView(state: State, row: number): Child {
   const numbers = Object.entries(e.numbers ?? {}).flatMap(([name, values]) => (typeof values[row] === "number" ? [`${data.metrics.find((m) => m.name === name)?.label ?? name} ${Number(values[row]!.toPrecision(5))}`] : []));
   const remark = data.strings[e.remarks?.[String(row)] ?? -1];
   const why = readWhys().e?.[String(row)];
+  const told = e.told?.[String(row)];
   const prompt = data.prompts[e.prompt[row] ?? -1];
   return [
     h("h3", { tabindex: -1 }, policyLabel(state, p), ` at start ${start} of ${taskName(data, t)}, seed ${seed}`),
     bad ? h("p", { class: "bad" }, ...(data.reasons[e.reason[row]!]?.startsWith("not attempted") ? [] : [h("b", {}, "Invalid: ")]), data.reasons[e.reason[row]!] ?? "") : h("ul", { class: "verdicts", "aria-label": "Verdicts" }, truths.map((m) => h("li", { class: holds(m) ? "yes" : "no" }, h("span", { "aria-hidden": "true" }, holds(m) ? "\u2713" : "\u2013"), data.metrics[m]!.label, h("span", { class: "unseen" }, holds(m) ? ": yes" : ": no")))),
     remark ? h("p", { class: "key" }, h("b", {}, "The policy says: "), remark) : null,
     numbers.length ? h("p", { class: "key" }, numbers.join("; ")) : null,
-    h("div", { class: "said" }, h("span", { class: "sub" }, "Instruction as sent"), prompt === undefined ? h("p", { class: "nothing" }, "What was sent is not the plan's instruction, and its text was not kept.") : h("q", { class: "prompt" }, prompt), ...(task.then ?? []).map((words) => h("p", { class: "later" }, "later, once its condition held: ", h("q", { class: "prompt" }, words)))),
+    h("div", { class: "said" }, h("span", { class: "sub" }, "Instruction as sent"), prompt === undefined ? h("p", { class: "nothing" }, "What was sent is not the plan's instruction, and its text was not kept.") : h("q", { class: "prompt" }, prompt), ...(task.then ?? []).map((words, k) => h("p", { class: "later" }, saidWhen(told, k), h("q", { class: "prompt" }, words)))),
     h("div", { class: "scene" }, topView(data, t, start), h("div", { class: "video" }, video ?? h("p", { class: "nothing" }, "No video was recorded. The episode can be had again, bit for bit:", command(`vlaprobe replay ${args} --video ${shellWord(`${task.name.replace(/[^\w.-]+/g, "_")}-${start}-${seed}.mp4`)}`)))),
     h("div", { class: "scrub" }, h("label", { for: "scrub" }, "Control step"), slider, shown),
     timeline?.element ?? h("p", { class: "nothing" }, bad ? "It ended before anything was kept." : "No timeline was kept for this episode."),
