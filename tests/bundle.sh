@@ -71,6 +71,26 @@ check "and have the same bytes" cmp "$work/first" "$work/second"
 echo "$stamp" >"$made/stamp"
 check "the image of the commit's time is made" images
 
+# The wheel for other systems: nothing that it loads is this system's but what every system has.
+check "the wheel is made" "$here/.ci/package" wheel
+in_wheel() {
+  python3 -m venv --system-site-packages "$work/env" && # numpy
+    "$work/env/bin/pip" install -q --no-index --no-deps "$made"/vlaprobe-*-manylinux_*.whl &&
+    (cd / && env -u PYTHONPATH "$work/env/bin/python" - "$work/wheel_run" <<'END'
+import os, re, sys, numpy, ssl, sqlite3
+promised = re.compile(r"^(ld-linux-x86-64|libc|libm|libmvec|libdl|librt|libpthread|libutil|libgcc_s|libstdc\+\+)\.so")
+loaded = lambda: {line.split()[-1] for line in open("/proc/self/maps") if ".so" in line}
+before = loaded()
+import vlaprobe
+vlaprobe.evaluate("expert", vlaprobe.compile(vlaprobe.suite_file()), tasks="carrot_on_plate", episodes=(0, 1), out=sys.argv[1], progress=False)
+odd = [path for path in loaded() - before if "/vlaprobe/" not in path and "/lib-dynload/" not in path and not promised.match(os.path.basename(path))]
+assert not odd, odd
+END
+    )
+}
+check "it runs two episodes with libraries of its own" in_wheel
+check "its traces and pictures are the build's" cmp <(hashes "$work/built") <(hashes "$work/wheel_run")
+
 # The image holds nothing but the folder: no shell, no system.
 unpack() { # the image's layers into $work/image
   python3 - "$made/$name.oci.tar" "$work/image" <<'END'
