@@ -4,7 +4,8 @@ namespace probe::make {
 
 std::vector<OutputFile> make_all() {
   std::vector<OutputFile> all;
-  for (auto* make : {make_basket,
+  for (auto* make : {make_apple,
+                     make_basket,
                      make_bottle,
                      make_bowl,
                      make_mug,
@@ -15,6 +16,7 @@ std::vector<OutputFile> make_all() {
                      make_green_cube,
                      make_half_sponge,
                      make_keyboard,
+                     make_long_sponge,
                      make_nut,
                      make_orange,
                      make_orange_juice,
@@ -22,10 +24,12 @@ std::vector<OutputFile> make_all() {
                      make_plate,
                      make_rabbit,
                      make_ramekin,
+                     make_slim_can,
                      make_small_plate,
                      make_sponge,
                      make_spoon,
                      make_towel,
+                     make_water_bottle,
                      make_wheel,
                      make_wicker_basket,
                      make_yellow_cube,

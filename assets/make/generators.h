@@ -8,6 +8,7 @@
 namespace probe::make {
 
 // objects/<name>/visual.glb and collision.obj, each.
+std::vector<OutputFile> make_apple();
 std::vector<OutputFile> make_basket();
 std::vector<OutputFile> make_bottle();
 std::vector<OutputFile> make_bowl();
@@ -18,6 +19,7 @@ std::vector<OutputFile> make_green_cube();
 std::vector<OutputFile> make_half_sponge();
 std::vector<OutputFile> make_keyboard();
 std::vector<OutputFile> make_mug();
+std::vector<OutputFile> make_long_sponge();
 std::vector<OutputFile> make_nut();
 std::vector<OutputFile> make_orange();
 std::vector<OutputFile> make_orange_juice();
@@ -25,11 +27,13 @@ std::vector<OutputFile> make_pepsi_can();
 std::vector<OutputFile> make_plate();
 std::vector<OutputFile> make_rabbit();
 std::vector<OutputFile> make_ramekin();
+std::vector<OutputFile> make_slim_can();
 std::vector<OutputFile> make_small_plate();
 std::vector<OutputFile> make_sponge();
 std::vector<OutputFile> make_spoon();
 std::vector<OutputFile> make_towel();
 std::vector<OutputFile> make_tray();
+std::vector<OutputFile> make_water_bottle();
 std::vector<OutputFile> make_wheel();
 std::vector<OutputFile> make_wicker_basket();
 std::vector<OutputFile> make_yellow_cube();
@@ -38,7 +42,7 @@ std::vector<OutputFile> make_widowx();            // robots/widowx/meshes/
 std::vector<OutputFile> make_panda();             // robots/panda/meshes/
 std::vector<OutputFile> make_google_robot();      // robots/google_robot/meshes/
 std::vector<OutputFile> make_table_scene();       // scenes/table/
-std::vector<OutputFile> make_google_table_scene();  // scenes/google_table/
+std::vector<OutputFile> make_google_table_scene();  // scenes/google_table/, google_room/
 std::vector<OutputFile> make_sink_fixture();      // fixtures/sink/
 std::vector<OutputFile> make_sink_scene();        // scenes/sink/
 std::vector<OutputFile> make_kitchen_scene();     // scenes/kitchen/

@@ -20,12 +20,28 @@ bool may_do(const Shortfall& miss, const Object& object) {
   return miss.position < thinnest / 2 && miss.rotation < kTilt;
 }
 
+// Where a table of starts has it well above the surface, something else may carry it: at which
+// height it is taken is not known before it has come to rest.
+bool is_given_above(const Scene& scene, const Start::Placed& placed, double half) {
+  constexpr double kAbove = 0.05;  // m
+  return placed.z && *placed.z - (scene.surface_z + half) > kAbove;
+}
+
+// Unless its solution says that nothing is put there: beside the target, say.
+bool is_put_onto_target(const Task& task) {
+  const auto goes_there = [](const SkillUse& use) {
+    return use.relation == plan::SkillRelation::kOn || use.relation == plan::SkillRelation::kIn;
+  };
+  return task.solution.empty() || std::ranges::any_of(task.solution, goes_there);
+}
+
 // A pose over the middle of the source, and one over the target with the source in hand.
 bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, const Robot& robot) {
   auto found = arms.find(starts.task.scene);
   if (found == arms.end())
     found = arms.emplace(starts.task.scene, Arm::of(starts.model, scene)).first;
   if (!found->second || starts.task.source == ObjectId::kNone) return true;
+  const bool is_onto = is_put_onto_target(starts.task);
   constexpr double kAboveTarget = 0.02;            // m
   constexpr double kThere = 0.001, kAskew = 0.05;  // m, rad
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
@@ -35,7 +51,8 @@ bool check_grasps(const TaskStarts& starts, Arms& arms, const Scene& scene, cons
     const double half = height(starts.object(placed[0]), placed[0].turn) / 2;
     const double on_target =
         has_both ? height(starts.object(placed[1]), placed[1].turn) + half + kAboveTarget : 0;
-    for (std::size_t i = 0; i < (has_both ? 2u : 1u); ++i) {
+    if (is_given_above(scene, placed[0], half)) continue;
+    for (std::size_t i = 0; i < (has_both && is_onto ? 2u : 1u); ++i) {
       const double z = scene.surface_z + (i == 0 ? half : on_target);
       const auto miss = found->second->misses(placed[i].x, placed[i].y, z);
       if (!miss || may_do(*miss, starts.object(placed[i]))) continue;

@@ -185,7 +185,9 @@ inline const std::vector<std::string>& published_names() {
 inline const std::vector<std::string>& object_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = published_names();
-    for (const char* name : {"bottle", "bowl", "mug", "tray", "wicker_basket"}) all.emplace_back(name);
+    for (const char* name : {"apple", "bottle", "bowl", "long_sponge", "mug", "slim_can", "tray",
+                             "water_bottle", "wicker_basket"})
+      all.emplace_back(name);
     return all;
   }();
   return names;

@@ -18,8 +18,9 @@ TEST_CASE("the manifest gives size and hash of every file, sorted by path") {
   CHECK(std::is_sorted(paths.begin(), paths.end()));
   // Six textures, three scenes, the sink's two files, six links of fixtures with joints, two a link
   // and two an object.
-  // The Google robot has more shapes that are seen than felt, and a table.
-  constexpr std::size_t kGoogle = 11 + 9 + 1;
+  // The Google robot has more shapes that are seen than felt, seven of them in three more colourings,
+  // a table and a room.
+  constexpr std::size_t kGoogle = 11 + 9 + 3 * 7 + 2;
   CHECK(paths.size() ==
         6 + 12 + kGoogle + 2 * test::link_names().size() + 2 * test::object_names().size());
 }

@@ -31,7 +31,8 @@ std::vector<Rest> rest_poses() {
       poses.push_back({object, 0, 90});
       continue;
     }
-    poses.push_back({object, 0, 0});
+    const bool stands = object == "slim_can" || object == "water_bottle";
+    poses.push_back({object, stands ? 90.0 : 0.0, 0});
   }
   poses.push_back({"carrot", 0, 180});
   poses.push_back({"spoon", 0, 90});

@@ -13,6 +13,14 @@ namespace {
 // Linear albedos.
 const Paint kShell{.name = "shell", .base_color = {0.73, 0.73, 0.73}, .roughness = 0.3};
 const Paint kTip{.name = "tip", .base_color = {0.855, 0.708, 0.216}, .roughness = 0.3};
+// The three other colourings of visual matching: arm and fingertips.
+struct Colouring {
+  const char* ending;
+  Colour arm, tip;
+};
+const Colouring kColourings[] = {{"_tabletop_1", {235, 209, 184}, {217, 161, 90}},
+                                 {"_tabletop_2", {238, 222, 200}, {242, 205, 126}},
+                                 {"_cabinet_1", {201, 169, 139}, {217, 161, 90}}};
 const Paint kDark{.name = "dark", .base_color = {0.03, 0.03, 0.033}, .roughness = 0.4};
 
 std::vector<Vec3> along_y(const Vec3& centre, double radius, double low, double high) {
@@ -166,6 +174,20 @@ std::vector<OutputFile> make_google_robot() {
       link_collision(robot, "finger_base", convex_hull(finger.points_in_metres(), "finger_base")));
   files.push_back(
       link_collision(robot, "finger_tip", convex_hull(tip.points_in_metres(), "finger_tip")));
+  // From shoulder to hand and the fingers; torso, head and base keep their colours.
+  for (const Colouring& colouring : kColourings) {
+    const auto painted = [](Paint paint, const Colour& srgb) {
+      paint.base_color = albedo_for(srgb, 1, 0);
+      return paint;
+    };
+    const Paint arm = painted(kShell, colouring.arm), ends = painted(kTip, colouring.tip);
+    for (const auto& [name, shape] : links) {
+      if (name == "torso" || name == "head_pan") continue;
+      files.push_back(link_visual(robot, name + colouring.ending, {{shape, arm}}));
+    }
+    files.push_back(
+        link_visual(robot, std::string("finger") + colouring.ending, {{finger, arm}, {tip, ends}}));
+  }
   return files;
 }
 

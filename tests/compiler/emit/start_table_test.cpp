@@ -322,3 +322,16 @@ TEST_CASE("what stands in a drawer in one start alone is found there") {
   CHECK(text.find("so in 1 of 2 starts") != std::string::npos);
   CHECK(text.find("episode 1:") != std::string::npos);
 }
+
+TEST_CASE("what a table puts well above the surface is not asked to be taken from there") {
+  const std::string text =
+      "scene wide like table { surface 87cm area (-60cm, -30cm) .. (4cm, 30cm) }\n" +
+      std::string(kLayout) +
+      "task t like on_table { scene wide; layout given; source carrot; target plate }\n";
+  const auto table = [](const char* height) {
+    return std::string("start,object,x_m,y_m,z_m\n0,carrot,-0.42,0,") + height +
+           "\n0,plate,-0.16,-0.075,0.90\n";
+  };
+  CHECK(said(table("0.90"), text).find("cannot grasp `carrot`") != std::string::npos);
+  CHECK(said(table("1.37"), text).find("cannot grasp `carrot`") == std::string::npos);
+}

@@ -136,6 +136,26 @@ layout l { place source at (0cm, 10cm); place target at (0cm, -10cm); drop 9cm s
 
 }  // namespace
 
+TEST_CASE("what is put beside the target need not come over it") {
+  const auto solved = [](const char* skill) {
+    return with_gantry(
+        "layout l { place source at (0cm, 0cm); place target at (0cm, 40cm); drop 9cm settle 1s }\n"
+        "task u like red_on_tray { scene hall; layout l; solution { " +
+        std::string(skill) + " } }");
+  };
+  // `t` has no solution.
+  const auto told = [](const test::Analysis& a) {
+    std::size_t count = 0;
+    for (const Diagnostic& said : a.diagnostics.items()) {
+      count += said.message.find("in `t`") == std::string::npos && said.code == Code::P0502;
+    }
+    return count;
+  };
+  CHECK(told(*solved("put source on target")) > 0);
+  CHECK_MESSAGE(told(*solved("put source beside target")) == 0,
+                solved("put source beside target")->said());
+}
+
 TEST_CASE("an arm of four joints is asked whether its tool comes low enough") {
   // The tool's lowest is 10 cm above the base, which stands at 80 cm.
   const auto low = with_scara("90cm");
