@@ -267,3 +267,43 @@ TEST_CASE("the Google robot is controlled at 3 Hz, and physics runs at 513 or 50
     }
   }
 }
+
+TEST_CASE("what the Google robot handles weighs, and rubs, as released") {
+  const auto list = read_file(VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_tasks.json");
+  if (!list) {
+    MESSAGE("skipped: the released things of the Google robot are not on this machine");
+    return;
+  }
+  const Json released = Json::parse(*list)["objects"];
+  const std::map<std::string, std::pair<const char*, const char*>> theirs = {
+      {"coke", {"opened_coke_can", "mass_kg_from_collision_mesh"}},
+      {"pepsi", {"opened_pepsi_can", "mass_kg_from_collision_mesh"}},
+      {"seven_up", {"opened_7up_can", "mass_kg_from_collision_mesh"}},
+      {"sprite", {"opened_sprite_can", "mass_kg_from_collision_mesh"}},
+      {"fanta", {"opened_fanta_can", "mass_kg_from_collision_mesh"}},
+      {"redbull", {"opened_redbull_can", "mass_kg_from_collision_mesh"}},
+      {"bottle", {"blue_plastic_bottle", "mass_kg_from_collision_mesh"}},
+      {"apple", {"apple", "mass_in_move_near_kg"}},
+      {"orange", {"orange", "mass_in_move_near_kg"}},
+      {"heavy_apple", {"apple", "mass_kg_from_collision_mesh"}},
+      {"heavy_orange", {"orange", "mass_kg_from_collision_mesh"}},
+      {"sponge", {"sponge", "mass_kg_from_collision_mesh"}},
+      {"spoon", {"bridge_spoon_generated_modified", "mass_kg_from_collision_mesh"}}};
+  const plan::Plan plan = plan_of("google_variants");
+  const plan::Tables& tables = plan.tables();
+  std::size_t seen = 0;
+  for (const plan::ObjectRecord& object : tables.objects) {
+    const std::string name(plan.text(object.name));
+    const auto found = theirs.find(name);
+    CAPTURE(name);
+    REQUIRE(found != theirs.end());
+    const Json& entry = released[found->second.first];
+    const auto masses = plan::slice_of(tables.masses, object.mass);
+    REQUIRE(masses.size() == 1);
+    CHECK(masses[0].mass ==
+          doctest::Approx(entry[found->second.second].get<double>()).epsilon(1e-9));
+    CHECK(object.friction == entry["static_friction"].get<double>());
+    ++seen;
+  }
+  CHECK(seen == theirs.size());
+}
