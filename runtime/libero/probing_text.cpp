@@ -8,7 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "runtime/libero/crowd.h"
 #include "runtime/libero/goal.h"
+#include "runtime/libero/start_rows.h"
 #include "runtime/libero/words.h"
 
 namespace probe::libero {
@@ -74,8 +76,16 @@ class TaskAsker {
     });
   }
 
-  // `is_shown`: there is a scene in another room.
-  std::string text(std::vector<SuiteText::Table>& tables, bool is_shown) const {
+  // What else can stand there of what is declared, for a task that puts one thing.
+  std::vector<Foreign> foreign(const std::vector<std::string>& declared, std::size_t turn) const {
+    const std::string_view what = kind();
+    if (what != "lays" && what != "fills") return {};
+    return crowd(problem_, things_, task_.written.table, declared, turn);
+  }
+
+  // `is_shown`: there is a scene in another room; `foreign`: what else stands there.
+  std::string text(std::vector<SuiteText::Table>& tables, bool is_shown,
+                   const std::vector<Foreign>& foreign) const {
     const std::string& id = task_.written.id;
     const std::string_view what = kind();
     const bool is_put = what == "lays" || what == "fills";
@@ -101,6 +111,12 @@ class TaskAsker {
         variants += fmt::format("  {}_released {{ say \"{}\" }}\n", id, task_.instruction);
       if (!roles_.distractors.empty()) add_table("alone", without_others(), "; distractors none");
       if (const auto other = swapped_with()) add_table("swapped", with_places_of(*other), "");
+      if (!foreign.empty()) {
+        std::vector<std::string> others = roles_.distractors;
+        for (const Foreign& one : foreign) others.push_back(one.object);
+        add_table("crowded", with_foreign(foreign),
+                  fmt::format("; distractors {}", fmt::join(others, ", ")));
+      }
     }
     const char* const say = what == "lays"    ? " say lay_put "
                             : what == "fills" ? " say fill_put "
@@ -144,30 +160,42 @@ class TaskAsker {
 
   // ---- tables
 
-  // What a row of the table is about: the second cell.
+  // What a row of the table is about.
   static std::string_view what_of(std::string_view row) {
     const std::size_t from = row.find(',') + 1;
     return row.substr(from, row.find(',', from) - from);
   }
 
-  template <typename Each>
-  std::string each_row(const Each& each) const {
-    std::string out;
-    std::string_view rest = task_.written.table;
-    while (!rest.empty()) {
-      const std::size_t end = rest.find('\n') + 1;
-      out += each(rest.substr(0, end));
-      rest.remove_prefix(end);
-    }
-    return out;
-  }
-
   std::string without_others() const {
-    return each_row([&](std::string_view row) {
+    return each_row(task_.written.table, [&](std::string_view row) {
       const bool is_other =
           std::ranges::find(roles_.distractors, what_of(row)) != roles_.distractors.end();
       return is_other ? std::string() : std::string(row);
     });
+  }
+
+  // Behind the last row of each start those of what else stands there.
+  std::string with_foreign(const std::vector<Foreign>& foreign) const {
+    std::string start, out;
+    const auto end_start = [&] {
+      if (start.empty()) return;
+      for (const Foreign& one : foreign)
+        out += fmt::format("{},{},{:.4f},{:.4f},{:.4f},1,0,0,0,\n", start, one.object, one.x, one.y,
+                           one.z);
+    };
+    bool is_head = true;
+    each_row(task_.written.table, [&](std::string_view row) {
+      const std::string of(row.substr(0, row.find(',')));
+      if (!is_head && of != start) {
+        end_start();
+        start = of;
+      }
+      is_head = false;
+      out += row;
+      return std::string();
+    });
+    end_start();
+    return out;
   }
 
   bool stands_on_workspace(const std::string& name) const {
@@ -204,28 +232,20 @@ class TaskAsker {
 
   // Each stands where the other stood, as high and turned as before.
   std::string with_places_of(const std::string& other) const {
-    constexpr std::size_t kX = 2, kY = 3;  // cells
-    const auto cells_of = [](std::string_view row) {
-      std::vector<std::string> cells;
-      for (;; row.remove_prefix(row.find(',') + 1)) {
-        cells.emplace_back(row.substr(0, row.find(',')));
-        if (row.find(',') == row.npos) return cells;
-      }
-    };
     std::map<std::string, std::pair<std::string, std::string>> places;  // by start and thing
-    each_row([&](std::string_view row) {
+    each_row(task_.written.table, [&](std::string_view row) {
       const std::vector<std::string> cells = cells_of(row);
-      places[cells[0] + "," + cells[1]] = {cells[kX], cells[kY]};
+      places[cells[kStartCell] + "," + cells[kWhatCell]] = {cells[kXCell], cells[kYCell]};
       return std::string();
     });
-    return each_row([&](std::string_view row) {
+    return each_row(task_.written.table, [&](std::string_view row) {
       const std::string_view what = what_of(row);
       const bool is_source = what == source_row();
       if (!is_source && what != other) return std::string(row);
       std::vector<std::string> cells = cells_of(row);
-      const auto& [x, y] = places.at(cells[0] + "," + (is_source ? other : source_row()));
-      cells[kX] = x;
-      cells[kY] = y;
+      const auto& [x, y] = places.at(cells[kStartCell] + "," + (is_source ? other : source_row()));
+      cells[kXCell] = x;
+      cells[kYCell] = y;
       return fmt::format("{}", fmt::join(cells, ","));
     });
   }
@@ -249,6 +269,15 @@ SuiteText write_probing(const std::vector<std::string>& suites, const std::vecto
   sets["twins"];
   std::string body, stages;
   std::set<std::string_view> shown;
+  std::set<std::string> declared;
+  for (const AskedTask& task : tasks) {
+    for (const BddlThing& object : task.problem.objects) {
+      if (object.name == object.category + "_1") declared.insert(object.name);
+    }
+  }
+  const std::vector<std::string> objects(declared.begin(), declared.end());
+  std::size_t turn = 0;
+  sets["crowded"];
   for (const AskedTask& task : tasks) {
     const TaskAsker asker(task, things);
     const auto place = std::ranges::find(kPlaces, task.written.scene, &PlaceRow::scene);
@@ -258,7 +287,11 @@ SuiteText write_probing(const std::vector<std::string>& suites, const std::vecto
     if (is_shown && shown.insert(task.written.stage).second)
       stages += fmt::format("scene {} like {} {{ backdrop \"{}\" }}\n",
                             shown_elsewhere(task.written), task.written.stage, place->elsewhere);
-    body += asker.text(out.tables, is_shown);
+    // From one task to the next others, whatever number they are.
+    constexpr std::size_t kStride = 7;
+    const std::vector<Foreign> foreign = asker.foreign(objects, kStride * turn++);
+    if (!foreign.empty()) sets["crowded"].push_back(task.written.id + "_crowded");
+    body += asker.text(out.tables, is_shown, foreign);
     sets[asker.kind()].push_back(task.written.id);
     if (is_known) sets[place->set].push_back(task.written.id);
     if (const std::string_view source = asker.source_set(); !source.empty())

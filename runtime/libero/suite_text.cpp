@@ -11,21 +11,10 @@
 
 #include "runtime/libero/goal.h"
 #include "runtime/libero/rooms.h"
+#include "runtime/libero/scene_kinds.h"
 
 namespace probe::libero {
 namespace {
-
-struct SceneRow {
-  std::string_view problem_class, scene, robot;
-  double x, y, z;  // m, the workspace's offset
-  double surface;  // m, its height
-  double regions;  // m, of the sites of its regions above its surface
-};
-constexpr SceneRow kScenes[] = {
-#define LIBERO_SCENE(problem, scene, robot, x, y, z, surface, regions) \
-  {#problem, #scene, #robot, x, y, z, surface, regions},
-#include "runtime/libero/scenes.def"
-};
 
 constexpr double kHalfSite = 0.007;  // m, half the height of a region's site on a table
 // A fixture's model stands this far below the workspace's offset (FIXTURE z_offset of the
@@ -80,7 +69,7 @@ class SuiteWriter {
  private:
   // What stands in one task's scene.
   struct Stage {
-    const SceneRow* row = nullptr;
+    const SceneKind* row = nullptr;
     std::map<std::string, std::string, std::less<>>
         fixtures;  // names in the text, by the problem's
     std::string scene;
@@ -132,7 +121,7 @@ class SuiteWriter {
   }
 
   // Things that begin inside the table or the floor are said above their task.
-  void add_depth(const TaskSource& task, const SceneRow& row, const std::string& id,
+  void add_depth(const TaskSource& task, const SceneKind& row, const std::string& id,
                  std::string& body) {
     constexpr double kShown = 1e-3;  // m
     std::size_t deep = 0;
@@ -174,10 +163,10 @@ class SuiteWriter {
 
   Status stand_up(const TaskSource& task, Stage& stage, std::string& body) {
     const BddlProblem& problem = task.problem;
-    const auto row = std::ranges::find(kScenes, problem.problem_class, &SceneRow::problem_class);
-    if (row == std::end(kScenes))
+    const SceneKind* const row = scene_kind(problem);
+    if (row == nullptr)
       return wrong(task, "problem class `" + problem.problem_class + "` is not known");
-    stage.row = &*row;
+    stage.row = row;
     std::vector<std::string> fixtures;
     for (const BddlThing& thing : problem.fixtures) {
       const Thing* known = thing_of(thing.category);
@@ -234,7 +223,7 @@ class SuiteWriter {
   }
 
   Result<Placed> place_of(const TaskSource& task, const BddlThing& thing, const Thing& known,
-                          const SceneRow& row) const {
+                          const SceneKind& row) const {
     Placed placed{thing.category, {}, {}};
     for (const FixturePose& given : poses_) {
       if (given.suite != suite_.folder || given.stem != task.stem || given.fixture != thing.name)
@@ -484,8 +473,8 @@ Result<SuiteText> write_suite(const Suite& suite, const std::vector<TaskSource>&
 }
 
 std::string_view scene_of_class(const BddlProblem& problem) {
-  const auto row = std::ranges::find(kScenes, problem.problem_class, &SceneRow::problem_class);
-  return row == std::end(kScenes) ? std::string_view() : row->scene;
+  const SceneKind* const kind = scene_kind(problem);
+  return kind == nullptr ? std::string_view() : kind->scene;
 }
 
 }  // namespace probe::libero

@@ -153,7 +153,7 @@ void write_pictures(const test::SmallFolder& folder, int off, int brighter) {
 TEST_CASE("rules, masks and pictures of a small import: held by what it is, missed by what is not") {
   const test::SmallFolder folder;
   REQUIRE(folder.import().ok());
-  folder.write("records/libero_tasks.json", tasks_json("put a cup in the drawer and close it"));
+  folder.write("records/libero_tasks.json", tasks_json("fill the drawer and close it"));
   folder.write("records/libero_object_classes.json", classes_json(0.0288));
   write_settled(folder, 0);
   write_pictures(folder, 0, 0);
@@ -207,7 +207,7 @@ TEST_CASE("fidelity of a small import: what is measured, what is beyond its bar,
     CHECK(row_of(*rows, row).how == "no records: `--records DIR`");
   }
 
-  folder.write("records/libero_tasks.json", tasks_json("put a cup in the drawer and close it"));
+  folder.write("records/libero_tasks.json", tasks_json("fill the drawer and close it"));
   folder.write("records/libero_object_classes.json", classes_json(0.0288));
   write_settled(folder, 0.001);
   rows = measure_fidelity(small_options(folder));
@@ -267,12 +267,12 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
   CHECK(refused(tasks, "{\"tusks\":3}") == "libero_tasks.json: there is no `tasks`");
   CHECK(refused(tasks, "{\"tasks\":[{\"suite\":1}]}") ==
         "libero_tasks.json, task 0: `suite` is not a text");
-  REQUIRE(refused(tasks, tasks_json("put a cup in the drawer and close it")).empty());
-  std::string changed = tasks_json("put a cup in the drawer and close it");
+  REQUIRE(refused(tasks, tasks_json("fill the drawer and close it")).empty());
+  std::string changed = tasks_json("fill the drawer and close it");
   REQUIRE(refused(classes, classes_json(0.0288)).empty());
   changed.replace(changed.find("\"close\""), 7, "\"shut\"");
   CHECK(refused(tasks, changed) == "libero_tasks.json, libero_90_00: `shut` is no rule");
-  REQUIRE(refused(tasks, tasks_json("put a cup in the drawer and close it")).empty());
+  REQUIRE(refused(tasks, tasks_json("fill the drawer and close it")).empty());
   changed = classes_json(0.0288);
   changed.replace(changed.find("\"0 0 0.1\""), 9, "\"0 0 a.1\"");
   CHECK(refused(classes, changed) ==
@@ -333,7 +333,7 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
 TEST_CASE("where nothing was compared nothing is held and nothing is missed") {
   const test::SmallFolder folder;
   REQUIRE(folder.import().ok());
-  folder.write("records/libero_tasks.json", tasks_json("put a cup in the drawer and close it"));
+  folder.write("records/libero_tasks.json", tasks_json("fill the drawer and close it"));
   folder.write("records/reference/osc_unit_libero_90_00.json", "[]");
   folder.write("records/reference/libero_90_00_osc.csv",
                "step,a0,a1,a2,a3,a4,a5,a6,q1,q2,q3,q4,q5,q6,q7,f1,f2,tcp_x,tcp_y,tcp_z\n");

@@ -133,7 +133,7 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
         std::string::npos);
   const std::string text = text_of(folder.root / "out/libero_90.probe");
   CAPTURE(text);
-  CHECK(text.find("say \"put a cup in the drawer and close it\"") != std::string::npos);
+  CHECK(text.find("say \"fill the drawer and close it\"") != std::string::npos);
   CHECK(text.find("metrics libero_90_00 like handling_one {") != std::string::npos);
   CHECK(text.find("in_site(source, target)") != std::string::npos);
   CHECK(text.find("  source cup_1; target chest_1.drawer; distractors cup_2, lid_1\n") !=
@@ -152,7 +152,7 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
   REQUIRE(plan.ok());
   REQUIRE(plan->tasks().size() == 1);
   const plan::TaskRecord& task = plan->tasks()[0];
-  CHECK(plan->text(task.prompt) == "put a cup in the drawer and close it");
+  CHECK(plan->text(task.prompt) == "fill the drawer and close it");
   CHECK(task.horizon == 400);
   CHECK(task.idle == 10);
   const auto episodes = plan->episodes(task);
@@ -405,13 +405,18 @@ TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a chec
   const auto plan = plan::Plan::from_bytes(asked.plan);
   REQUIRE(plan.ok());
   std::map<std::string_view, int> moved;  // by axis
+  int crowded = 0;                        // where there is room for more
   for (const plan::TaskRecord& task : plan->tasks()) {
     if (task.baseline == plan::kNone) continue;
     const auto names = plan::axis_names(task.axes);
     // Where the released words say which by a place, the proved phrase is other words as well.
     if (names.size() > 1) CHECK(plan->text(task.name).find("_where_") != std::string_view::npos);
     for (const std::string_view name : names) ++moved[name];
+    if (!plan->text(task.name).ends_with("_crowded")) continue;
+    CHECK(task.axes == plan::bit(plan::Axis::kDistractors));
+    ++crowded;
   }
+  CHECK(crowded > 40);
   for (const char* const axis :
        {"language.action", "language.paraphrase", "language.appearance", "language.commonsense",
         "language.spatial", "language.negation", "object.source", "distractors", "layout", "light",

@@ -19,7 +19,7 @@
 
 namespace probe::test {
 
-inline const char* const kSmallTask = "KITCHEN_SCENE1_put_a_cup_in_the_drawer_and_close_it";
+inline const char* const kSmallTask = "KITCHEN_SCENE1_fill_the_drawer_and_close_it";
 
 struct SmallFolder {
   std::filesystem::path root =

@@ -1,0 +1,25 @@
+// Things that a task does not have, put where nothing stands in any of its starts.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/libero/bddl.h"
+#include "runtime/libero/things.h"
+
+namespace probe::libero {
+
+struct Foreign {
+  std::string object;  // "ketchup_1"
+  double x = 0, y = 0, z = 0;  // m, upright
+};
+
+// Up to two, near the source and free of all else by the circles around both: of drawers and doors
+// also by how far they come out. `table`: of the task's starts; `declared`: the objects that there
+// are; `turn`: from which of them on, so that tasks do not all get the same. Nothing is taken that
+// shares a noun with anything of the task: no instruction becomes ambiguous by it.
+std::vector<Foreign> crowd(const BddlProblem& problem, const Things& things, std::string_view table,
+                           const std::vector<std::string>& declared, std::size_t turn);
+
+}  // namespace probe::libero
