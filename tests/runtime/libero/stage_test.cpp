@@ -42,7 +42,7 @@ plan::Plan plan_of(const std::string& tasks) {
   std::ofstream(file)
       << "use \"suite/libero/stage.probe\"\nuse \"suite/catalog.probe\"\n"
          "layout one { place source at (0cm, 0cm); orient source yaw 0deg; drop 2cm settle 0.5s }\n"
-         "metrics lifted { success = at end height(source) > 5cm }\n"
+         "metrics lifted { success = at end height(source) > 2m }\n"
       << tasks;
   const Compilation built = compiled(file.string());
   fs::remove(file);
