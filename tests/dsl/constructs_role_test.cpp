@@ -65,7 +65,7 @@ TEST_CASE("task, task_st: a task needs the roles that are spoken of and no other
   const auto a = clean(
       "layout alone { cells spots = grid 2 x 2 at (0cm, 0cm) spread (10cm, 10cm)\n"
       "  place source in distinct spots; orient by rest; drop 10cm settle 0.5s }\n"
-      "metrics high { success = at end (height(source) > 10cm) }\n"
+      "metrics high { success = at end (height(source) > height(start(source)) + 10cm) }\n"
       "abstract task lift like base { layout alone; metrics high; say \"lift {the source}\" }\n"
       "task lift_red like lift { source red }\n"
       "variant lift_blue of lift_red { source blue }\n");
