@@ -8,7 +8,7 @@ import { fileURLToPath } from 'node:url';
 const here = dirname(fileURLToPath(import.meta.url));
 const [packages, out] = process.argv.slice(2).map((path) => resolve(path));
 const require = createRequire(join(packages, 'package.json'));
-const stage = join(packages, 'stage');
+const stage = join(dirname(out), 'stage');
 rmSync(stage, { recursive: true, force: true });
 mkdirSync(stage, { recursive: true });
 for (const name of ['README.md', 'language-configuration.json', 'syntaxes']) cpSync(join(here, name), join(stage, name), { recursive: true });

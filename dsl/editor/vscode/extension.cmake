@@ -9,4 +9,6 @@ add_custom_command(
   DEPENDS ${vscode_build}/node_modules/.package-lock.json ${vscode_inputs} ${CMAKE_CURRENT_LIST_DIR}/build.mjs
           ${CMAKE_CURRENT_LIST_DIR}/README.md ${CMAKE_CURRENT_LIST_DIR}/language-configuration.json
   COMMENT "Packing the extension for VS Code")
+# What a test packs it with.
+add_custom_target(vscode_packages DEPENDS ${vscode_build}/node_modules/.package-lock.json)
 add_custom_target(vscode_extension DEPENDS ${vscode_build}/probe-language.vsix)

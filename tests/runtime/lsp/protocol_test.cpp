@@ -89,6 +89,37 @@ TEST_CASE("Neovim is answered all that it can ask, as the protocol has it") {
                   method);
 }
 
+TEST_CASE("Emacs, set up as the page says, shows mistakes, hovers, completes, finds and renames") {
+  // Debian's site files are where the package of eglot is found.
+  const std::string emacs = "emacs --batch -q --eval '(progn (require (quote package)) (package-initialize))' ";
+  if (!has("emacs") || std::system((emacs + "--eval \"(require 'eglot)\" >/dev/null 2>&1").c_str()) != 0) {
+    MESSAGE("SKIPPED: emacs with eglot is not here");
+    return;
+  }
+  const Folder folder;
+  fs::create_directory(folder.path() + "/texts");
+  folder.write("texts/things.probe", kThings);
+  folder.write("texts/user.probe", "use \"things.probe\"\nobject other like bal { color blue }\n");
+  const std::string line = "cd '" + folder.path() + "' && HOME='" + folder.path() +
+                           "' VLAPROBE_FOLDER='" + folder.path() + "/texts' VLAPROBE_TOLD='" +
+                           folder.path() + "/told' VLAPROBE_PROGRAM='" VLAPROBE_BINARY_DIR
+                           "/vlaprobe' timeout 120 " + emacs + "-l '" + kProtocol +
+                           "/eglot.el' >emacs.log 2>&1 </dev/null";
+  const int status = std::system(line.c_str());
+  const std::string told = text_of_file(folder.path() + "/told");
+  CAPTURE(told);
+  CAPTURE(text_of_file(folder.path() + "/emacs.log"));
+  CHECK(status == 0);
+  for (const char* wanted :
+       {"server: vlaprobe\n", "[P0201]: unknown object `bal`\n", "hover: ```probe attribute color { red, blue } ```",
+        "completion: ball\n", "mended: yes\n", "definition: object ball { color red; friction 1 }\n",
+        "object other like globe { color blue }", "end: done\n"}) {
+    CAPTURE(wanted);
+    CHECK(told.find(wanted) != told.npos);
+  }
+  CHECK(told.find("FAILED") == told.npos);
+}
+
 TEST_CASE("what Neovim cannot ask is as the protocol has it, too") {
   const Folder folder;
   folder.write("things.probe", kThings);

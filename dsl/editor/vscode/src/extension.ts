@@ -10,12 +10,17 @@ function setting(name: string): string {
   return vscode.workspace.getConfiguration('vlaprobe').get<string>(name, '');
 }
 
+// One folder or several, as words of the program.
+function assets(): string[] {
+  const given = vscode.workspace.getConfiguration('vlaprobe').get<string | string[]>('assets', '');
+  return [given].flat().filter((folder) => folder).flatMap((folder) => ['--assets', folder]);
+}
+
 async function start(): Promise<void> {
-  const assets = setting('assets');
   client = new LanguageClient(
     'vlaprobe',
     'Probe',
-    { command: setting('program') || 'vlaprobe', args: ['lsp', ...(assets ? ['--assets', assets] : [])] },
+    { command: setting('program') || 'vlaprobe', args: ['lsp', ...assets()] },
     { documentSelector: [{ language: 'probe' }] },
   );
   try {
@@ -41,8 +46,7 @@ function run(command: string, uri: string, subject: string): void {
     vscode.window.terminals.find((known) => known.name === 'vlaprobe') ??
     vscode.window.createTerminal({ name: 'vlaprobe', cwd: folder });
   terminal.show(true);
-  const assets = setting('assets');
-  const more = assets ? ` --assets ${quoted(assets)}` : '';
+  const more = assets().map((word) => ` ${quoted(word)}`).join('');
   for (const line of linesFor(command, setting('program') || 'vlaprobe', file, subject, more))
     terminal.sendText(line);
 }
