@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <filesystem>
+#include <mutex>
 
 #include "runtime/base/clock.h"
 #include "runtime/plan/later.h"
@@ -44,62 +47,107 @@ class ScratchFolder {
   std::string path_;
 };
 
+constexpr std::chrono::milliseconds kLetGo{300};
+
 }  // namespace
+
+// One episode while it is played and looked at. Its thread owns it, too, and may outlive the player.
+struct Player::Run {
+  Tell tell;
+  Unread unread;
+  std::atomic<bool> stop = false;
+  std::mutex mutex;  // of what follows
+  std::condition_variable ends;
+  bool is_over = false, is_let_go = false;
+  std::unique_ptr<Episode> seen;  // that can be looked at
+
+  // Whoever was let go says no more.
+  void say_frame(wire::Frame frame) {
+    const std::lock_guard lock(mutex);
+    if (!is_let_go) tell(std::move(frame));
+  }
+  void say(Json json) { say_frame(message(json)); }
+
+  void play(std::shared_ptr<const Shown> shown, const PlayWish& wish);
+  // What is to be said of it, which is {kind: "played", ...}.
+  Result<Json> play_whole(const PlayWish& wish, Episode& episode);
+};
 
 // Tells the page of each step and keeps the state that it can be drawn from again.
 class Player::Watcher final : public show::FrameSink {
  public:
-  Watcher(const Player& player, Episode& episode) : player_(player), episode_(episode) {}
+  Watcher(Run& run, Episode& episode) : run_(run), episode_(episode) {}
 
   Status frame(std::span<const stage::CameraFrame> frames, int step,
                std::span<const store::MetricValue> metrics) override {
-    if (player_.stop_) return Failure{Fault::kUsage, "stopped", ""};
+    if (run_.stop) return Failure{Fault::kUsage, "stopped", ""};
     episode_.states.push_back(episode_.stage->save());
     Json values = Json::array();
     for (const store::MetricValue& metric : metrics) values.push_back(metric.value);
     Json json = {{"kind", "step"}, {"step", step}, {"values", std::move(values)}};
-    if (player_.unread_() > kMostUnread) {
-      player_.say(std::move(json));
+    if (run_.unread() > kMostUnread) {
+      run_.say(std::move(json));
     } else {
-      player_.tell_(picture_message(std::move(json), frames));
+      run_.say_frame(picture_message(std::move(json), frames));
     }
     return {};
   }
 
  private:
-  const Player& player_;
+  Run& run_;
   Episode& episode_;
 };
 
-Player::~Player() { stop(); }
+Player::~Player() { let_go(false); }
 
-void Player::stop() {
-  stop_ = true;
-  if (thread_.joinable()) thread_.join();
+void Player::stop() { let_go(true); }
+
+void Player::let_go(bool is_told) {
+  if (!thread_.joinable()) return;
+  run_->stop = true;
+  std::unique_lock lock(run_->mutex);
+  if (run_->ends.wait_for(lock, kLetGo, [&] { return run_->is_over; })) {
+    lock.unlock();
+    return thread_.join();
+  }
+  run_->is_let_go = true;
+  lock.unlock();
+  thread_.detach();
+  run_.reset();
+  if (is_told)
+    say({{"kind", "stopped"}, {"message", "stopped"}});
 }
 
 void Player::say(Json json) const { tell_(message(json)); }
 
 void Player::play(std::shared_ptr<const Shown> shown, PlayWish wish) {
-  stop();
-  stop_ = false;
-  thread_ =
-      std::thread([this, shown = std::move(shown), wish = std::move(wish)] { run(shown, wish); });
+  let_go(false);
+  run_ = std::make_shared<Run>();
+  run_->tell = tell_;
+  run_->unread = unread_;
+  thread_ = std::thread([run = run_, shown = std::move(shown), wish = std::move(wish)]() mutable {
+    run->play(std::move(shown), wish);
+    {
+      const std::lock_guard lock(run->mutex);
+      run->is_over = true;
+    }
+    run->ends.notify_all();
+  });
 }
 
-void Player::run(std::shared_ptr<const Shown> shown, const PlayWish& wish) {
+void Player::Run::play(std::shared_ptr<const Shown> shown, const PlayWish& wish) {
   auto episode = std::make_unique<Episode>();
   episode->shown = std::move(shown);
   auto played = play_whole(wish, *episode);
   if (!played) return say({{"kind", "stopped"}, {"message", to_text(played.failure())}});
   {
-    const std::lock_guard lock(mutex_);
-    episode_ = std::move(episode);
+    const std::lock_guard lock(mutex);
+    seen = std::move(episode);
   }
   say(std::move(*played));  // from now on it can be looked at
 }
 
-Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
+Result<Json> Player::Run::play_whole(const PlayWish& wish, Episode& episode) {
   const plan::Plan& plan = episode.shown->plan;
   const auto task = plan.find_task(wish.task);
   if (!task) return Failure{Fault::kUsage, "is not in the text any more", wish.task};
@@ -152,11 +200,13 @@ Result<Json> Player::play_whole(const PlayWish& wish, Episode& episode) {
 }
 
 void Player::look(int step) {
-  const std::lock_guard lock(mutex_);
-  if (episode_ == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode_->states.size())
+  if (run_ == nullptr) return;
+  const std::lock_guard lock(run_->mutex);
+  Episode* const episode = run_->seen.get();
+  if (episode == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode->states.size())
     return;
-  stage::Stage& stage = *episode_->stage;
-  auto restored = stage.restore(episode_->states[static_cast<std::size_t>(step)]);
+  stage::Stage& stage = *episode->stage;
+  auto restored = stage.restore(episode->states[static_cast<std::size_t>(step)]);
   if (!restored) return say({{"kind", "stopped"}, {"message", to_text(restored.failure())}});
   const auto seen = stage.observe();
   if (!seen) return say({{"kind", "stopped"}, {"message", to_text(seen.failure())}});
@@ -164,13 +214,15 @@ void Player::look(int step) {
 }
 
 std::optional<Player::Start> Player::start_at(int step) {
-  const std::lock_guard lock(mutex_);
-  if (episode_ == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode_->states.size())
+  if (run_ == nullptr) return std::nullopt;
+  const std::lock_guard lock(run_->mutex);
+  Episode* const episode = run_->seen.get();
+  if (episode == nullptr || step < 0 || static_cast<std::size_t>(step) >= episode->states.size())
     return std::nullopt;
-  stage::Stage& stage = *episode_->stage;
-  if (!stage.restore(episode_->states[static_cast<std::size_t>(step)])) return std::nullopt;
-  const plan::Plan& plan = episode_->shown->plan;
-  const plan::TaskRecord& task = plan.tasks()[episode_->task];
+  stage::Stage& stage = *episode->stage;
+  if (!stage.restore(episode->states[static_cast<std::size_t>(step)])) return std::nullopt;
+  const plan::Plan& plan = episode->shown->plan;
+  const plan::TaskRecord& task = plan.tasks()[episode->task];
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[task.scene].robot];
   std::string table = "start,object,x_m,y_m,z_m,qw,qx,qy,qz,value\n";
   const auto objects = stage.objects();
@@ -191,16 +243,22 @@ std::optional<Player::Start> Player::start_at(int step) {
 }
 
 void Player::why(const std::string& metric) {
-  const std::lock_guard lock(mutex_);
-  if (episode_ == nullptr) return say({{"kind", "why"}, {"message", "no episode was played"}});
-  auto metrics = rejudge::explain(episode_->shown->plan, episode_->task, episode_->trace, metric);
+  const std::shared_ptr<Run> run = run_;
+  const Episode* episode = nullptr;
+  std::unique_lock<std::mutex> lock;
+  if (run != nullptr) {
+    lock = std::unique_lock(run->mutex);
+    episode = run->seen.get();
+  }
+  if (episode == nullptr) return say({{"kind", "why"}, {"message", "no episode was played"}});
+  auto metrics = rejudge::explain(episode->shown->plan, episode->task, episode->trace, metric);
   if (!metrics) return say({{"kind", "why"}, {"message", to_text(metrics.failure())}});
   rejudge::EpisodeWhy why;
-  why.task = episode_->trace.header.task;
-  why.episode = episode_->trace.header.episode;
-  why.seed = episode_->trace.header.seed;
-  why.steps = static_cast<int>(episode_->trace.steps.size());
-  if (!episode_->remark.empty()) why.remark = episode_->remark;
+  why.task = episode->trace.header.task;
+  why.episode = episode->trace.header.episode;
+  why.seed = episode->trace.header.seed;
+  why.steps = static_cast<int>(episode->trace.steps.size());
+  if (!episode->remark.empty()) why.remark = episode->remark;
   why.metrics = std::move(*metrics);
   Json json = rejudge::to_json(why);
   json["kind"] = "why";

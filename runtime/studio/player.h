@@ -2,10 +2,8 @@
 // step by step, explained.
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -57,6 +55,7 @@ class Player {
   std::optional<Start> start_at(int step);
 
  private:
+  struct Run;
   class Watcher;
   struct Episode {
     std::shared_ptr<const Shown> shown;  // outlives the stage
@@ -66,19 +65,15 @@ class Player {
     std::vector<stage::StageState> states;  // by step
     store::Trace trace;
     std::string remark;
-    bool is_over = false;
   };
-  void run(std::shared_ptr<const Shown> shown, const PlayWish& wish);
-  // What is to be said of it, which is {kind: "played", ...}.
-  Result<Json> play_whole(const PlayWish& wish, Episode& episode);
+  // Who waits for a policy that does not answer is let go, and ends when its server's time is up.
+  void let_go(bool is_told);
   void say(Json json) const;
 
   const Tell tell_;
   const Unread unread_;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  // of the episode while it is looked at
-  std::unique_ptr<Episode> episode_;
-  std::thread thread_;
+  std::shared_ptr<Run> run_;  // the last that was begun
+  std::thread thread_;        // its
 };
 
 }  // namespace probe::studio

@@ -32,6 +32,7 @@ TEST_CASE(
 TEST_CASE("light and dark, 1280 and 1920 wide: nothing is cut, all has contrast and is reached by keys") {
   check("looks");
 }
+TEST_CASE("several cameras and a policy behind a server, without a mouse; one that never answers") { check("served"); }
 TEST_CASE("the studio's sources have the types they claim") {
   CHECK(probe::test::check_types("runtime/studio/page") == "");
 }

@@ -16,7 +16,7 @@ const number = (value: number): string => (Number.isInteger(value) ? String(valu
 
 export class Play {
   private readonly pictures = new Pictures("The episode");
-  private readonly policy = h("input", { list: "policies", value: "expert", "aria-label": "Policy", spellcheck: false, size: 26 });
+  private readonly policy = h("input", { list: "policies", value: "expert", "aria-label": "Policy", spellcheck: false, size: 26, keydown: (event) => { const { key, ctrlKey, metaKey } = event as KeyboardEvent; if (key === "Enter" && !ctrlKey && !metaKey) this.begin(); } });
   private readonly policies = h("datalist", { id: "policies" });
   private readonly seed = h("input", { type: "number", value: 0, min: 0, max: 1000000, "aria-label": "Seed", class: "short" });
   private readonly run = h("button", { type: "button", class: "primary", click: () => this.begin(), title: "Ctrl+Enter" }, "Run");
@@ -57,7 +57,14 @@ export class Play {
 
   private tell(words: string, kind = ""): void {
     this.verdict.textContent = words;
+    this.verdict.title = words;
     this.verdict.className = `verdict ${kind}`;
+  }
+
+  // What a line may cut is read below it.
+  private tellWhole(words: string): void {
+    this.tell(words, "bad");
+    replace(this.reasons, h("p", { class: "note bad" }, words));
   }
 
   private look(step: number): void {
@@ -96,6 +103,7 @@ export class Play {
         this.scrub.disabled = this.keep.disabled = true;
         this.halt.disabled = false;
         this.element.dataset.state = "playing";
+        this.pictures.draw([]);
         replace(this.lights, this.metrics.map((metric) => h("button", { type: "button", class: metric.truth ? "light truth" : "light", click: () => this.host.say({ do: "why", metric: metric.name }) }, h("span", { class: "lamp", "aria-hidden": "true" }), h("span", {}, metric.name), " ", h("span", { class: "value" }, ""))));
         this.timeline.begin(this.metrics, message.horizon);
         this.tell(`${message.policy} on start ${message.start} of ${message.task}`);
@@ -113,7 +121,7 @@ export class Play {
         this.halt.disabled = true;
         this.at(message.steps);
         const success = this.metrics.findIndex((metric) => metric.name === "success");
-        if (message.invalid) this.tell(message.invalid, "bad");
+        if (message.invalid) this.tellWhole(message.invalid);
         else if (success < 0) this.tell(`judged after ${message.steps} steps`);
         else this.tell(message.values[success] ? `success after ${message.steps} steps` : `no success after ${message.steps} steps${message.remark ? `: ${message.remark}` : ""}`, message.values[success] ? "good" : "bad");
         this.element.dataset.state = "played";
@@ -122,7 +130,7 @@ export class Play {
       case "stopped":
         this.isPlaying = false;
         this.halt.disabled = true;
-        this.tell(message.message, "bad");
+        this.tellWhole(message.message);
         this.element.dataset.state = "stopped";
         return true;
       case "why":

@@ -1,9 +1,10 @@
 // The studio in headless Chromium: node browser.mjs BUILD SOURCE OUT CASE. BUILD is the build folder, OUT gets texts and
 // screenshots. Ends with "ok" and status 0, or names what is wrong.
 import { mkdirSync, rmSync } from "node:fs";
+import { createServer } from "node:net";
 import { join } from "node:path";
 import { lowContrast } from "../../../report/page/test/contrast.mjs";
-import { chord, expect, launch, open, pause, startStudio, until, wrong } from "./studio.mjs";
+import { chord, expect, launch, open, pause, serve, startStudio, until, wrong } from "./studio.mjs";
 
 const [build, source, out, name] = process.argv.slice(2);
 mkdirSync(out, { recursive: true });
@@ -209,7 +210,76 @@ async function looks() {
   }
 }
 
-const cases = { author, bad, looks };
+const kCameras = `use "${source}/examples/wrist_camera.probe"
+
+task own like carrot_two_eyes { horizon 12 steps }
+variant own_tilted of own { camera tilted as wrist }
+suite small trained on bridge_v2 { tasks { own, own_tilted }; seeds 42 }
+`;
+
+// Several cameras and a policy behind a server, without a mouse; one that never answers is let go at once.
+async function served() {
+  const server = await serve(build, ["--policy", "digest", "--protocol", "openpi", "--port", "0"]);
+  const silent = createServer(() => {});  // takes connections and says nothing
+  await new Promise((done) => silent.listen(0, "127.0.0.1", done));
+  const studio = await start("served", kCameras);
+  try {
+    for (const [width, height, dark] of [[1280, 800, false], [1280, 800, true], [1920, 1080, false], [1920, 1080, true]]) {
+      const label = `${width}${dark ? " dark" : ""}`;
+      const page = await open(browser, studio.address, { width, height, dark });
+      await until(page, () => / full own 0/.test(document.documentElement.dataset.shown ?? ""), "a full picture");
+      const cameras = await page.$$eval(".seen figure", (all) => all.map((one) => [one.textContent, one.querySelector("canvas").width, Math.round(one.querySelector("canvas").getBoundingClientRect().width), Math.round(one.querySelector("canvas").getBoundingClientRect().height)]));
+      expect(cameras.length === 2 && cameras[0][0] === "third_view" && cameras[1][0] === "wrist" && cameras[1][1] === 224, `${label}: the cameras are ${JSON.stringify(cameras)}`);
+      expect(cameras.every(([, , w, h]) => w >= 100 && h >= 60), `${label}: the pictures are ${JSON.stringify(cameras)}`);
+      // To the pane of the episode, its policy typed in.
+      await page.evaluate(() => document.querySelector(".editor textarea, .editor .native-edit-context").focus());
+      for (let i = 0; i < 4; ++i) await page.keyboard.press("F6");
+      expect(await page.evaluate(() => document.activeElement.getAttribute("aria-label")) === "Policy", `${label}: F6 does not lead to the policy`);
+      await chord(page, "Control", "a");
+      await page.keyboard.sendCharacter(server.address);
+      await page.keyboard.press("Enter");
+      await until(page, () => document.querySelector(".play").dataset.state === "played", "the served policy's episode ends");
+      expect(/^no success after 12 steps/.test((await words(page)).verdict), `${label}: the served policy's verdict is ${(await words(page)).verdict}`);
+      const seen = await page.$$eval(".play figure figcaption", (all) => all.map((one) => one.textContent));
+      expect(JSON.stringify(seen) === JSON.stringify(["third_view", "wrist"]), `${label}: the episode shows ${seen}`);
+      await page.screenshot({ path: join(out, `served-${width}${dark ? "-dark" : ""}.png`) });
+      for (const text of (await lowContrast(page, ".unseen, .monaco-editor, .top, button:disabled")).slice(0, 8)) wrong.push(`contrast, ${label}: ${text}`);
+      const lost = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight || [...document.querySelectorAll(".bar > *")].some((e) => e.getBoundingClientRect().right > e.parentElement.getBoundingClientRect().right + 1));
+      expect(!lost, `${label}: something does not fit`);
+      if (width === 1280 && !dark) {
+        // A server that says nothing: it is told who is waited for, and Stop stops.
+        await chord(page, "Control", "a");
+        await page.keyboard.sendCharacter(`openpi://127.0.0.1:${silent.address().port}`);
+        await page.keyboard.press("Enter");
+        await until(page, () => document.querySelector(".play").dataset.state === "playing", "it is waited for");
+        await page.keyboard.press("Tab");
+        await page.keyboard.press("Tab");
+        await page.keyboard.press("Tab");
+        expect(await page.evaluate(() => document.activeElement.textContent) === "Stop", "Stop is not reached by keys");
+        const begun = Date.now();
+        await page.keyboard.press("Enter");
+        await until(page, () => document.querySelector(".play").dataset.state === "stopped", "it is stopped");
+        expect(Date.now() - begun < 3000, `to stop took ${Date.now() - begun} ms`);
+        // The page goes on.
+        await newPicture(page, () => chord(page, "Alt", "PageDown"));
+        await page.focus(".play input[aria-label=Policy]");
+        await chord(page, "Control", "a");
+        await page.keyboard.sendCharacter("openpi://127.0.0.1:1?timeout.wait_s=0.2");
+        await page.keyboard.press("Enter");
+        await until(page, () => /127.0.0.1:1/.test(document.querySelector(".verdict").textContent) && document.querySelector(".play").dataset.state !== "playing", "who is not there is told");
+        expect(await page.evaluate(() => document.querySelector(".reasons").textContent === document.querySelector(".verdict").textContent), "what the line cuts is not read below it");
+        await page.screenshot({ path: join(out, "served-absent.png") });
+      }
+      await page.close();
+    }
+  } finally {
+    await server.end();
+    silent.close();
+    silent.closeAllConnections?.();
+  }
+}
+
+const cases = { author, bad, looks, served };
 try {
   if (!cases[name]) throw new Error(`there is no case ${name}`);
   await cases[name]();

@@ -36,6 +36,16 @@ export async function startStudio(build, folder, text) {
   }) };
 }
 
+// A policy server of ours: {address, end()}
+export async function serve(build, words) {
+  const program = spawn(join(build, "vlaprobe"), ["serve", ...words], { stdio: ["ignore", "pipe", "inherit"] });
+  const address = await new Promise((found, failed) => {
+    createInterface(program.stdout).once("line", found);
+    program.once("exit", (code) => failed(new Error(`vlaprobe serve ended with ${code}`)));
+  });
+  return { address, end: () => new Promise((done) => { program.removeAllListeners("exit"); program.once("exit", done); program.kill("SIGTERM"); }) };
+}
+
 // Errors of any kind are wrong, and so is what is asked of another place than the studio.
 export async function open(browser, address, { width = 1280, height = 800, dark = false, ready = true } = {}) {
   const page = await browser.newPage();
