@@ -2,6 +2,7 @@
 #include "compiler/define/starts.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <set>
 #include <span>
@@ -415,6 +416,49 @@ std::vector<Start> clear_starts(Relations& relations, const Model& model, const 
 
 namespace {
 
+// "(7.5cm, 0cm)"
+std::string place_text(const Start::Placed& placed) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.4gcm, %.4gcm)", placed.x * 100, placed.y * 100);
+  return text;
+}
+
+// Why a task has no start in which its phrases are clear: what each of them comes to in all starts,
+// and where things are in one of them.
+void report_unclear(Context& context, Relations& relations, const Task& task,
+                    const std::vector<Start>& starts) {
+  const Model& model = context.model;
+  Diagnostic& said =
+      context.report(Code::P0402, task.clear.back().phrase.span,
+                     "none of the " + std::to_string(starts.size()) + " starts of `" + task.name +
+                         "` has clear phrases");
+  for (const ClearPhrase& clear : task.clear) {
+    const ObjectId wanted = task.objects_in(clear.role).front();
+    const Phrase& phrase = *model.objects[wanted].find_phrase(clear.phrase.text);
+    std::size_t wrong = 0, others = 0, close = 0;
+    for (const Start& start : starts) {
+      const Denotation meant = InStart(relations, task, start).denote(phrase, wanted);
+      if (meant.is_clear()) continue;
+      // As the checks of phrases weigh them: what is false is false whatever else is meant.
+      ++(!meant.may_fit ? wrong : !meant.sure.empty() ? others : close);
+    }
+    const std::string of = " of " + std::to_string(starts.size()) + " starts";
+    std::string sum;
+    const auto add = [&](std::size_t count, const std::string& what) {
+      if (count > 0)
+        sum += (sum.empty() ? "" : ", ") + std::to_string(count) + (sum.empty() ? of : "") + what;
+    };
+    add(wrong, " are not so of `" + model.objects[wanted].name + "`");
+    add(others, " are so of another thing, too");
+    add(close, " are too close to call, as things come to rest a little beside where they are put");
+    if (!sum.empty()) said.note("\"" + phrase.text.text + "\": " + sum);
+  }
+  std::string places;
+  for (const Start::Placed& placed : starts.front().placed)
+    places += (places.empty() ? "" : ", ") + model.objects[placed.object].name + " at " + place_text(placed);
+  said.note("start 0: " + places);
+}
+
 // What differs by the choice of phrases can be told only now.
 void compare_choices(Model& model) {
   for (Task& task : model.tasks) {
@@ -499,6 +543,7 @@ void define_starts(Context& context) {
   Model& model = context.model;
   std::map<std::vector<double>, const std::vector<Start>*> known;
   std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
+  std::set<std::vector<double>> unclear;  // starts that no phrase is clear in: said once
   Relations relations(model, context.asset_root, context.diagnostics);
   Supports supports(model, context.asset_root);
   std::size_t episodes = 0;
@@ -521,13 +566,15 @@ void define_starts(Context& context) {
         report_problem(context, task, *problem);
         continue;
       }
-      const std::size_t all = found.size();
-      found = clear_starts(relations, model, task, std::move(found));
-      if (found.empty()) {
-        context.report(Code::P0402, task.clear.back().phrase.span,
-                       "none of the " + std::to_string(all) + " starts of `" + task.name +
-                           "` has clear phrases");
-        continue;
+      if (!task.clear.empty()) {
+        std::vector<Start> clear = clear_starts(relations, model, task, found);
+        if (clear.empty()) {
+          // What one of several that are alike lacks, all do.
+          if (unclear.insert(starts_key(model, task)).second)
+            report_unclear(context, relations, task, found);
+          continue;
+        }
+        found = std::move(clear);
       }
       starts = &model.start_lists.emplace_back(std::move(found));
     }

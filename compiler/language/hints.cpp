@@ -97,6 +97,26 @@ std::vector<Hint> hints(const Snapshot& snapshot, FileId file, std::uint32_t beg
     add(end_of(snapshot, suite.span), counted(suite.members.size(), "task") + ", " +
                                           counted(episodes_of(model, suite), "episode"));
   }
+  // `roll 90deg, yaw 90deg` is two turns, and reads as one.
+  const auto turns = [&](const auto& statement) {
+    if (statement.poses.size() > 1)
+      add(statement.span.end, counted(statement.poses.size(), "turn") + ", one a start");
+  };
+  if (const syntax::ParseResult* tree = snapshot.tree(file)) {
+    for (const syntax::Decl& decl : tree->file.decls) {
+      const auto in = [&](const auto& body) {
+        for (const auto& statement : body) {
+          std::visit(
+              [&](const auto& one) {
+                if constexpr (requires { one.poses.size(); one.span.end; }) turns(one);
+              },
+              statement);
+        }
+      };
+      if (const auto* object = std::get_if<syntax::ObjectDecl>(&decl.node)) in(object->body);
+      if (const auto* layout = std::get_if<syntax::LayoutDecl>(&decl.node)) in(layout->body);
+    }
+  }
   std::ranges::stable_sort(out, {}, &Hint::offset);
   return out;
 }

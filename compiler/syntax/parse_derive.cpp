@@ -76,6 +76,16 @@ Binder Parser::binder() {
     expect(TokenKind::kLeftParen);
     out.over = BinderObjects{comma_list([this] { return thing(); })};
     expect(TokenKind::kRightParen);
+  } else if (at(TokenKind::kLeftParen) && kind_ahead(1) == TokenKind::kIdent &&
+             kind_ahead(2) == TokenKind::kComma) {
+    fail(Code::P0101, here(),
+         "a list of names has a word before it that says of what: `lights (..)`, `cameras`, `scenes`, "
+         "`objects` or `parts`; tasks stand in braces");
+  } else if ((declared_pool() || at_word("objects") || at_word("parts")) &&
+             kind_ahead(1) == TokenKind::kIdent && text_ahead(1) != "where") {
+    // No set: two names behind one another are none.
+    advance();
+    expect(TokenKind::kLeftParen);
   } else {
     out.over = BinderTasks{task_set_without_where()};
   }

@@ -205,9 +205,16 @@ TEST_CASE("a layout is cut to the starts in which a phrase is clear, for the bas
   CHECK(first_line(test::analyze_with_suite(
                        two_places + "task t like all { layout any where clear sight of source }")
                        ->said()) == "error[P0201]: unknown phrase of `sided` `sight`");
-  CHECK(first_line(test::analyze_with_suite(
-                       two_places + "task t like all { layout any where clear amid of source }")
-                       ->said()) == "error[P0402]: none of the 4 starts of `t` has clear phrases");
+  const std::string none =
+      test::analyze_with_suite(two_places +
+                               "task t like all { layout any where clear amid of source }\n"
+                               "variant said_too of t { refer source as amid }")
+          ->said();
+  CHECK(first_line(none) == "error[P0402]: none of the 4 starts of `t` has clear phrases");
+  // Why, where things are, and once for all that have these starts.
+  CHECK(none.find("4 of 4 starts are not so of `sided`") != std::string::npos);
+  CHECK(none.find("start 0: sided at (") != std::string::npos);
+  CHECK(none.find("`said_too` has clear") == std::string::npos);
 }
 
 TEST_CASE("a task whose layout is cut is compared with no task that is not whole") {

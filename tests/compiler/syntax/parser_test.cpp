@@ -302,7 +302,7 @@ TEST_CASE("operators bind in the order of the grammar") {
 
 TEST_CASE("a quantifier reaches as far as one condition") {
   CHECK(grouped("all p in {c.top, c . middle} | whole c.door: open(p)") ==
-        "(all p in {c.top, c . middle} | whole c.door: open(p))");
+        "all p in {c.top, c . middle} | whole c.door: open(p)");
   CHECK(grouped("no x in bodies - {a, b} - links: touching(a, x) and c") ==
         "(no x in bodies - {a, b} - links: touching(a, x) and c)");
   CHECK(grouped("all {\n a > 1\n any f in (g | h): f\n}") == "all{(a > 1);any f in g | h: f;}");

@@ -44,6 +44,17 @@ TEST_CASE("a bad head of a declaration still has its block read") {
   CHECK(parsed.file().decls.size() == 2);
 }
 
+TEST_CASE("a list that a derive goes over has a word before it and parentheses round it") {
+  CHECK(Parsed("derive \"{t}_{l}\" for t in { a }, l in lights day, night { light l }").messages() ==
+        "1:46 P0101 found `day`, expected `(`\n");
+  CHECK(Parsed("derive \"{t}_{l}\" for t in { a }, l in (day, night) { light l }").messages() ==
+        "1:39 P0101 a list of names has a word before it that says of what: `lights (..)`, `cameras`, "
+        "`scenes`, `objects` or `parts`; tasks stand in braces\n");
+  // A set may have such a name.
+  CHECK(Parsed("derive \"{t}_x\" for t in lights { light l }").messages() == "");
+  CHECK(Parsed("derive \"{t}_x\" for t in lights where axis light { light l }").messages() == "");
+}
+
 TEST_CASE("an unclosed parenthesis points at where it was opened and costs one line") {
   const Parsed parsed(
       "layout l {\n  place target at (-12.5cm, 2.5cm\n  orient by rest\n  expect 2 episodes\n}\n");
