@@ -45,7 +45,7 @@ bool loses_names(const std::vector<const syntax::File*>& files, const Diagnostic
 }  // namespace
 
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
-              const std::string& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots,
+              const AssetRoot& asset_root, Diagnostics& diagnostics, std::vector<FileId> roots,
               const Depth& depth) {
   if (roots.empty()) {
     for (const syntax::File* file : files) roots.push_back(file->id);

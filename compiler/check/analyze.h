@@ -8,6 +8,7 @@
 #include "compiler/model/model.h"
 #include "compiler/names/reporter.h"
 #include "compiler/syntax/ast.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -17,7 +18,7 @@ namespace probe::sema {
 // `asset_root` is where URDF files are looked up. `roots`: the files named by the user rather than
 // by `use`; empty means all.
 Model analyze(const SourceSet& sources, const std::vector<const syntax::File*>& files,
-              const std::string& asset_root, Diagnostics& diagnostics,
+              const AssetRoot& asset_root, Diagnostics& diagnostics,
               std::vector<FileId> roots = {}, const Depth& depth = {});
 
 }  // namespace probe::sema

@@ -24,7 +24,7 @@ constexpr std::size_t kMostNamed = 12;  // starts that a message names
 
 class BegunChecker {
  public:
-  BegunChecker(const Model& model, const std::string& asset_root, Reporter& reporter)
+  BegunChecker(const Model& model, const AssetRoot& asset_root, Reporter& reporter)
       : model_(model), centres_(asset_root), reporter_(reporter) {}
 
   void check(const Task& task) {
@@ -142,7 +142,7 @@ class BegunChecker {
 
 }  // namespace
 
-void check_begun(const Model& model, const std::string& asset_root, Reporter& reporter) {
+void check_begun(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
   if (reporter.has_errors()) return;  // what is lowered is whole
   BegunChecker checker(model, asset_root, reporter);
   for (const Task& task : model.tasks) {

@@ -58,7 +58,7 @@ std::string box_statement(const Bounds& bounds) {
 
 }  // namespace
 
-void check_boxes(const Model& model, const std::string& asset_root, Reporter& reporter) {
+void check_boxes(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
   for (const Object& object : model.objects) {
     if (object.of) continue;
     const Span& decl = object.decl_span;

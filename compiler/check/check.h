@@ -9,6 +9,7 @@
 #include "compiler/model/model.h"
 #include "compiler/names/reporter.h"
 #include "compiler/names/symbols.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -19,7 +20,7 @@ struct Checked {
   const SourceSet& sources;
   const std::vector<const syntax::File*>& files;
   std::span<const FileId> roots;  // named by the user rather than by `use`
-  std::string asset_root;
+  AssetRoot asset_root;
 };
 
 // Reports at Task::place; where that is not what was said, a label leads there.
@@ -36,7 +37,7 @@ inline Diagnostic& report_of(Reporter& reporter, auto what, const Task& task, co
 void check_model(const Checked& checked, Reporter& reporter);
 
 void check_comparisons(const Model& model, Reporter& reporter);  // P0701-P0703
-void check_phrases(const Model& model, const std::string& asset_root,
+void check_phrases(const Model& model, const AssetRoot& asset_root,
                    Reporter& reporter);                            // P0401-P0407
 void check_spatial_words(const Model& model, Reporter& reporter);  // P1202 of phrases
 void check_goal_words(const Model& model, Reporter& reporter);     // P1202 of instructions
@@ -45,10 +46,10 @@ void check_look_words(const Model& model, Reporter& reporter);     // P1510
 void check_poses(const Model& model, Reporter& reporter);          // P0404 of `pose`
 void check_mentions(const Model& model, Reporter& reporter);       // P0404 of words
 void check_named(const Model& model, Reporter& reporter);          // P0201 of metrics
-void check_starts(const Model& model, const std::string& asset_root,
+void check_starts(const Model& model, const AssetRoot& asset_root,
                   Reporter& reporter);                       // P0501, P0502, P0505, P1302, P1511
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
-void check_begun(const Model& model, const std::string& asset_root, Reporter&);  // P0607
+void check_begun(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0607
 // What of it only fingers or a gripper have, such as "`grip`"; empty where nothing is.
 std::string asks_for_fingers(const Model& model, ExprRef expr);
 // The read-outs whose metrics are true or false: "`at end`, `once` or `always`".
@@ -58,7 +59,7 @@ void check_samples(const Model& model, Reporter& reporter);         // P0706
 void check_photos(const Model& model, Reporter& reporter);          // P0304 of cameras that jitter
 void check_tags(const Model& model, Reporter& reporter);            // P0705
 void check_magnitudes(const Symbols& symbols, Reporter& reporter);  // P0303
-void check_boxes(const Model& model, const std::string& asset_root,
+void check_boxes(const Model& model, const AssetRoot& asset_root,
                  Reporter&);                                    // P0506
 void check_unused(const Checked& checked, Reporter& reporter);  // P0205
 

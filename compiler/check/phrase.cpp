@@ -425,7 +425,7 @@ void check_turns(const Task& task, Reporter& reporter) {
 
 }  // namespace
 
-void check_phrases(const Model& model, const std::string& asset_root, Reporter& reporter) {
+void check_phrases(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
   Unfit unfit;
   Relations relations(model, asset_root, reporter.diagnostics);
   UnclearStarts unclear(model, relations);

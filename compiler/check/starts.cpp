@@ -50,7 +50,7 @@ std::string at(const Object& object, const Start::Placed& placed) {
   return object.name + " at (" + centimetres(placed.x) + ", " + centimetres(placed.y) + ")";
 }
 
-void check_starts(const Model& model, const std::string& asset_root, Reporter& reporter) {
+void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
   // Tasks share lists of starts; what was fine for one in its scene is fine for the next, and what
   // a table of starts has is said of the first task that begins so.
   using Where = std::pair<SceneId, std::vector<double>>;

@@ -12,6 +12,7 @@
 #include "compiler/geometry/travel.h"
 #include "compiler/model/model.h"
 #include "compiler/names/reporter.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -41,14 +42,14 @@ struct ArmLink {
 class Travels {
  public:
   // The model must live as long.
-  Travels(const Model& model, std::string asset_root)
+  Travels(const Model& model, AssetRoot asset_root)
       : model_(model), asset_root_(std::move(asset_root)) {}
   const std::optional<Travel>& of(const Scene& scene, FixtureId id);
   const std::vector<ArmLink>& arm(SceneId id);
 
  private:
   const Model& model_;
-  std::string asset_root_;
+  AssetRoot asset_root_;
   std::map<std::pair<FixtureId, double>, std::optional<Travel>> known_;  // by lift
   std::map<SceneId, std::vector<ArmLink>> arms_;
 };

@@ -12,7 +12,7 @@
 namespace probe::sema {
 namespace {
 
-std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const std::string& asset_root) {
+std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const AssetRoot& asset_root) {
   std::vector<ArmLink> links;
   if (scene.robot == RobotId::kNone) return links;
   const Robot& robot = model.robots[scene.robot];
@@ -29,7 +29,7 @@ std::vector<ArmLink> arm_of(const Model& model, const Scene& scene, const std::s
   tree->link_poses(joints, poses);
   const Pose base = pose_of(scene.base_position, scene.base_turn.rotation);
   const std::string folder =
-      (std::filesystem::path(asset_root) / robot.urdf.text).parent_path().string();
+      std::filesystem::path(asset_root.file(robot.urdf.text)).parent_path().string();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (const scene::Solid& solid : scene::link_solids(robot.model->links[i], folder))
       links.push_back({robot.model->links[i].name, moved(solid, base * poses[i])});

@@ -12,6 +12,7 @@
 #include "compiler/define/denote.h"
 #include "compiler/geometry/centre.h"
 #include "compiler/lower/lower.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -49,7 +50,7 @@ std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model, con
 class Relations {
  public:
   // What cannot be measured is reported once, and unknown from then on.
-  Relations(const Model& model, std::string asset_root, Diagnostics& diagnostics)
+  Relations(const Model& model, AssetRoot asset_root, Diagnostics& diagnostics)
       : model_(model), centres_(std::move(asset_root)), diagnostics_(diagnostics) {}
 
  private:

@@ -10,6 +10,7 @@
 #include "compiler/define/starts.h"
 #include "compiler/geometry/travel.h"
 #include "compiler/model/model.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -28,7 +29,7 @@ std::vector<Put> puts_of(const Model& model, const Task& task);
 class Supports {
  public:
   // The model must live as long.
-  Supports(const Model& model, std::string asset_root)
+  Supports(const Model& model, AssetRoot asset_root)
       : model_(model), asset_root_(std::move(asset_root)) {}
 
   // Gives a place and a height to all that is put, and a height to the objects that carry
@@ -45,7 +46,7 @@ class Supports {
   const std::optional<Travel>& travel(const Scene& scene, FixtureId id);
 
   const Model& model_;
-  std::string asset_root_;
+  AssetRoot asset_root_;
   std::map<std::pair<FixtureId, double>, std::optional<Travel>> travels_;  // by lift
 };
 

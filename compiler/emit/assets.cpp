@@ -1,6 +1,5 @@
 #include "compiler/emit/assets.h"
 
-#include <filesystem>
 #include <optional>
 
 #include "runtime/base/file.h"
@@ -11,7 +10,11 @@
 namespace probe::emit {
 
 bool AssetTable::has(const std::string& path) const {
-  return is_file((std::filesystem::path(root_) / path).string());
+  return is_file(root_.file(path));
+}
+
+const AssetFolder& AssetTable::folder(const std::string& path) {
+  return folders_.try_emplace(path, path).first->second;
 }
 
 std::string AssetTable::find(const std::string& stem,
@@ -40,7 +43,8 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   if (path.size() > plan::kMaxStringBytes) return miss("is longer than a plan keeps");
   if (const char* defect = plan::find_text_defect(path)) return miss(defect);
   // A path leads below the root, so that a plan means the same files wherever the root lies.
-  const auto file = folder_.resolve(path);
+  const std::string& holder = root_.holder(path);
+  const auto file = folder(holder).resolve(path);
   if (!file) {
     const std::string& why = file.failure().message;
     return miss(why == "there is no such file" ? "is not there" : why);
@@ -54,7 +58,7 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
     asset.hash = sha256(std::string_view(*bytes));
   }
   if (inspect_) {
-    const Status good = inspect_(path, kind, hashes_ ? &asset.hash : nullptr);
+    const Status good = inspect_(holder, path, kind, hashes_ ? &asset.hash : nullptr);
     if (!good) return miss(good.failure().message);
   }
   assets_.push_back(std::move(asset));

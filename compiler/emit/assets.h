@@ -11,6 +11,7 @@
 #include "compiler/emit/compile.h"
 #include "compiler/source/source.h"
 #include "runtime/base/asset_path.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
 
@@ -39,8 +40,8 @@ struct AssetMiss {
 class AssetTable {
  public:
   // `hashes` off: bytes are not read here, which is enough to check a text.
-  AssetTable(std::string root, bool hashes, AssetInspector inspect)
-      : folder_(root), root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
+  AssetTable(AssetRoot root, bool hashes, AssetInspector inspect)
+      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
 
   // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
   // file is missed once.
@@ -55,8 +56,10 @@ class AssetTable {
   const std::vector<Asset>& assets() const { return assets_; }
 
  private:
-  AssetFolder folder_;
-  std::string root_;
+  const AssetFolder& folder(const std::string& path);
+
+  AssetRoot root_;
+  std::map<std::string, AssetFolder> folders_;  // of the root, as they are needed
   bool hashes_;
   AssetInspector inspect_;
   std::vector<AssetMiss> misses_;

@@ -122,7 +122,11 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
     if (std::find(out.roots.begin(), out.roots.end(), name) != out.roots.end())
       named.push_back(result.file.id);
   }
-  out.model = sema::analyze(out.compilation.sources, trees, options.asset_root,
+  // Files that the program has itself come first, then those that it uses.
+  std::vector<std::string> texts = out.roots;
+  for (const FileId id : out.ids) texts.push_back(out.compilation.sources.file(id).name());
+  out.compilation.asset_root = options.asset_root.beside(texts);
+  out.model = sema::analyze(out.compilation.sources, trees, out.compilation.asset_root,
                             out.compilation.diagnostics, named, {.stop = options.stop});
   out.compilation.unused_phrases = unused_phrases(out.model);
   out.compilation.referring = referring_words(out.model);
@@ -167,7 +171,7 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
-        options.asset_root,
+        compilation.asset_root,
         options.suite,
         std::filesystem::path(analyzed.roots.front()).parent_path().string(),
         write,

@@ -12,18 +12,21 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "compiler/source/source.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
 
 namespace probe {
 
-// Whether a file of the assets is good: `path` relative to their folder, its hash when it is known.
+// Whether a file of the assets is good: `path` relative to `folder`, its hash when it is known.
 using AssetInspector =
-    std::function<Status(const std::string& path, plan::AssetKind kind, const Sha256* hash)>;
+    std::function<Status(const std::string& folder, const std::string& path, plan::AssetKind kind,
+                         const Sha256* hash)>;
 
 struct CompileOptions {
-  std::string asset_root;
+  // What lies beside the texts is looked for, too.
+  AssetRoot asset_root;
   std::string suite = {};  // the one suite to compile; "" = all
   // Where a `use` is looked up when the file is not beside its user: folders that hold `std/`.
   std::vector<std::string> library_folders = {};
@@ -63,6 +66,7 @@ struct Compilation {
   std::map<std::string, std::string> called;
   // How much was looked at: tasks that are no pattern and lack nothing, and their starts.
   std::size_t tasks = 0, starts = 0;
+  AssetRoot asset_root;  // where its files were looked for: also beside the texts
 };
 
 // In: paths. Out: sources, diagnostics and, from build(), the verified bytes of a plan. The order:

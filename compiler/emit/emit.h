@@ -10,12 +10,13 @@
 #include "compiler/diag/diagnostic.h"
 #include "compiler/emit/compile.h"
 #include "compiler/model/model.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::emit {
 
 struct EmitOptions {
-  std::string asset_root;
+  AssetRoot asset_root;
   std::string suite;          // the one suite to keep; "" keeps all tasks
   std::string source_folder;  // paths of sources are written relative to it
   bool write = true;          // off: diagnostics only, no bytes

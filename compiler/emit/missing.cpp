@@ -1,5 +1,6 @@
 // Assets as records, and P0202 for those that are not there.
 #include <algorithm>
+#include <set>
 
 #include "compiler/emit/emitter.h"
 
@@ -38,6 +39,7 @@ bool Emitter::needs(const sema::Task& task, const AssetOwner& owner) const {
 
 void Emitter::report_misses(const std::vector<TaskId>& chosen) {
   constexpr std::size_t kNamed = 6;
+  std::set<std::string> advised;  // once each
   for (const AssetMiss& miss : assets_.misses()) {
     std::string names;
     std::size_t count = 0;
@@ -46,10 +48,14 @@ void Emitter::report_misses(const std::vector<TaskId>& chosen) {
       names += (count == 1 ? "`" : ", `") + model_.tasks[id].name + "`";
     }
     if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-    diagnostics_
-        .report(Situation::kAssetMissing, miss.span, "asset `" + miss.path + "` " + miss.why)
-        .note("looked for it in the assets folder `" + options_.asset_root + "`")
+    Diagnostic& said = diagnostics_.report(Situation::kAssetMissing, miss.span,
+                                           "asset `" + miss.path + "` " + miss.why);
+    said.note("looked for it in the assets folder " + options_.asset_root.text() +
+              " and beside the text")
         .note("needed by " + names);
+    // Who names a folder of one mug lacks all else.
+    const std::string advice = options_.asset_root.advice(miss.path);
+    if (!advice.empty() && advised.insert(advice).second) said.help(advice);
   }
 }
 

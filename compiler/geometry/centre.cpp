@@ -1,7 +1,5 @@
 #include "compiler/geometry/centre.h"
 
-#include <filesystem>
-
 #include "runtime/scene/collision_mesh.h"
 
 namespace probe::sema {
@@ -13,9 +11,8 @@ const Centre& Centres::of(const Object& object) {
     at->second.at = Vec3(object.mass->spread->centre.data());
     return at->second;
   }
-  const std::filesystem::path path =
-      std::filesystem::path(asset_root_) / "objects" / object.mesh.text / "collision.obj";
-  if (const auto shape = scene::load_collision_mesh(path.string(), Vec3::Constant(object.scale))) {
+  const std::string path = asset_root_.file("objects/" + object.mesh.text + "/collision.obj");
+  if (const auto shape = scene::load_collision_mesh(path, Vec3::Constant(object.scale))) {
     at->second.at = shape->center_of_mass;
     return at->second;
   }

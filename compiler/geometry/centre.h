@@ -5,6 +5,7 @@
 #include <string>
 
 #include "compiler/model/model.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/geometry.h"
 
 namespace probe::sema {
@@ -18,11 +19,11 @@ struct Centre {
 // collected, it is in the middle half of the box.
 class Centres {
  public:
-  explicit Centres(std::string asset_root) : asset_root_(std::move(asset_root)) {}
+  explicit Centres(AssetRoot asset_root) : asset_root_(std::move(asset_root)) {}
   const Centre& of(const Object& object);
 
  private:
-  std::string asset_root_;
+  AssetRoot asset_root_;
   std::map<std::string, Centre> known_;  // by object
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include "runtime/base/file.h"
@@ -44,10 +43,8 @@ std::optional<Bounds> bounds_of_obj(std::string_view text) {
   return bounds;
 }
 
-std::optional<Bounds> bounds_of_mesh(const std::string& asset_root, const std::string& mesh) {
-  const std::filesystem::path path =
-      std::filesystem::path(asset_root) / "objects" / mesh / "collision.obj";
-  const auto text = read_file(path.string());
+std::optional<Bounds> bounds_of_mesh(const AssetRoot& asset_root, const std::string& mesh) {
+  const auto text = read_file(asset_root.file("objects/" + mesh + "/collision.obj"));
   if (!text || text->empty()) return std::nullopt;
   return bounds_of_obj(*text);
 }

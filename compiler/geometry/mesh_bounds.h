@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/base/asset_root.h"
+
 namespace probe::sema {
 
 struct Bounds {
@@ -17,6 +19,6 @@ struct Bounds {
 std::optional<Bounds> bounds_of_obj(std::string_view text);
 // Of assets/objects/MESH/collision.obj; nothing as well when the file cannot be read, which is
 // reported where assets are collected.
-std::optional<Bounds> bounds_of_mesh(const std::string& asset_root, const std::string& mesh);
+std::optional<Bounds> bounds_of_mesh(const AssetRoot& asset_root, const std::string& mesh);
 
 }  // namespace probe::sema

@@ -59,13 +59,13 @@ Travel::Travel(const Pose& place, const Fixture& fixture, robot::Tree tree)
     : fixture_(&fixture), tree_(std::move(tree)), base_(place) {}
 
 std::optional<Travel> Travel::of(const Scene& scene, const Fixture& fixture,
-                                 const std::string& asset_root) {
+                                 const AssetRoot& asset_root) {
   if (fixture.broken || !fixture.model) return std::nullopt;
   auto tree = tree_of(fixture);
   if (!tree) return std::nullopt;
   Travel travel(place_of(scene, fixture), fixture, std::move(*tree));
   const std::string folder =
-      (std::filesystem::path(asset_root) / fixture.urdf.text).parent_path().string();
+      std::filesystem::path(asset_root.file(fixture.urdf.text)).parent_path().string();
   for (std::uint32_t i = 0; i < fixture.parts.size(); ++i) {
     const auto& link = fixture.model->links[static_cast<std::size_t>(fixture.parts[i].index)];
     for (const scene::Solid& solid : scene::link_solids(link, folder))

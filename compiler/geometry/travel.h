@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compiler/model/model.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/geometry.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/scene/solid.h"
@@ -32,7 +33,7 @@ class Travel {
   // cannot be read, which is reported where assets are collected, fills nothing. Nothing when the
   // fixture has no description.
   static std::optional<Travel> of(const Scene& scene, const Fixture& fixture,
-                                  const std::string& asset_root);
+                                  const AssetRoot& asset_root);
 
   // With each joint at these positions.
   std::vector<PartBox> at(std::span<const double> joints) const;

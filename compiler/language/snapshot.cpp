@@ -23,7 +23,10 @@ std::unique_ptr<Snapshot> Snapshot::analysed(const std::string& root, const Unsa
   if (out == nullptr) return nullptr;
   std::vector<const syntax::File*> trees;
   for (const syntax::ParseResult& file : out->program_.files) trees.push_back(&file.file);
-  out->model_ = sema::analyze(out->sources_, trees, setting.asset_root, out->diagnostics_,
+  std::vector<std::string> texts;  // as the compiler has them
+  texts.push_back(out->path(out->root_));
+  for (const syntax::ParseResult& file : out->program_.files) texts.push_back(out->path(file.file.id));
+  out->model_ = sema::analyze(out->sources_, trees, setting.asset_root.beside(texts), out->diagnostics_,
                               {out->root_}, {.is_immediate = true, .wants = &out->wants_});
   return out;
 }

@@ -14,12 +14,13 @@
 #include "compiler/language/positions.h"
 #include "compiler/model/model.h"
 #include "compiler/syntax/parser.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::language {
 
 // What every program of an editor shares.
 struct Setting {
-  std::string asset_root;
+  AssetRoot asset_root;
   std::vector<std::string> library_folders;  // that hold `std/`
 };
 

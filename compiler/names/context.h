@@ -10,6 +10,7 @@
 #include "compiler/model/model.h"
 #include "compiler/names/reporter.h"
 #include "compiler/names/symbols.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::sema {
 
@@ -17,7 +18,7 @@ struct Context {
   const SourceSet& sources;
   Reporter& reporter;
   Diagnostics& diagnostics;  // of the reporter
-  std::string asset_root;
+  AssetRoot asset_root;
   Model& model;
   const std::vector<const syntax::File*>& files;  // a file after the files it uses
   const std::vector<FileId>& roots;               // named by the user rather than by `use`

@@ -12,6 +12,7 @@
 #include "compiler/model/model.h"
 #include "compiler/rephrase/leaks.h"
 #include "compiler/rephrase/wordings.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::rephrase {
 
@@ -27,7 +28,7 @@ struct Options {
   // For readers who look a rewording up by the instruction alone: only what is proved of every task
   // here that has the instruction, and the same of each.
   bool by_instruction = false;
-  std::string asset_root = {};  // of the meshes whose middles relations measure
+  AssetRoot asset_root = {};  // of the meshes whose middles relations measure
   bool drop_leaks = false;      // left out and counted; else they are told, and the caller refuses
 };
 

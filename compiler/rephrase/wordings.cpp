@@ -99,7 +99,7 @@ std::optional<Refusal> why_unclear(const sema::Denotation& meant) {
 
 }  // namespace
 
-Prover::Prover(const Model& model, std::string asset_root)
+Prover::Prover(const Model& model, AssetRoot asset_root)
     : model_(model),
       actions_(model),
       mentions_(model),

@@ -12,6 +12,7 @@
 #include "compiler/model/model.h"
 #include "compiler/rephrase/actions.h"
 #include "compiler/rephrase/refusal.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::rephrase {
 
@@ -39,7 +40,7 @@ class Prover {
  public:
   // The model must live as long; it has no errors. `asset_root`: of the meshes whose middles the
   // relations of phrases measure.
-  explicit Prover(const sema::Model& model, std::string asset_root = {});
+  explicit Prover(const sema::Model& model, AssetRoot asset_root = {});
 
   // Of a concrete task.
   Proved prove(const sema::Task& task, std::uint64_t seed);

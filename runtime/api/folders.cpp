@@ -11,6 +11,17 @@ static_assert(static_cast<int>(run::IfChanged::kFork) == VLAPROBE_FORK);
 
 std::string text_of(const char* text) { return text == nullptr ? std::string() : text; }
 
+AssetRoot folders_of(const char* text) {
+  std::vector<std::string> folders;
+  const std::string lines = text_of(text);
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const std::size_t end = std::min(lines.find('\n', begin), lines.size());
+    folders.push_back(lines.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return AssetRoot::chosen(folders);
+}
+
 Status give_text(std::string_view text, char** out) {
   if (out == nullptr) return {};
   *out = copy_text(text);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/json.h"
 #include "runtime/base/result.h"
 #include "runtime/run/run.h"
@@ -14,6 +15,9 @@ namespace probe::api {
 
 // "" of NULL.
 std::string text_of(const char* text);
+
+// Of a text with one folder a line.
+AssetRoot folders_of(const char* text);
 
 // Copies for the caller, who may want none (`out` NULL). Throw std::bad_alloc.
 Status give_text(std::string_view text, char** out);

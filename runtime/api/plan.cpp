@@ -8,6 +8,7 @@
 #include "runtime/api/calls.h"
 #include "runtime/api/folders.h"
 #include "runtime/base/asset_root.h"
+#include "runtime/base/paths.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
 #include "runtime/compile/files.h"
@@ -15,8 +16,20 @@
 
 namespace probe::api {
 
-SharedPlan::SharedPlan(plan::Plan plan, std::string assets)
-    : plan_(std::move(plan)), root_(to_hex(plan_.root())), asset_root_(std::move(assets)) {
+namespace {
+
+std::string lines_of(const AssetRoot& root) {
+  std::string lines;
+  for (const std::string& folder : root.folders())
+    lines += (lines.empty() ? "" : "\n") + absolute_path(folder);
+  return lines;
+}
+
+}  // namespace
+
+SharedPlan::SharedPlan(plan::Plan plan, AssetRoot assets)
+    : plan_(std::move(plan)), root_(to_hex(plan_.root())), asset_root_(std::move(assets)),
+      asset_folders_(lines_of(asset_root_)) {
   for (const plan::TaskRecord& task : plan_.tasks()) {
     names_.emplace_back(plan_.text(task.name));
     instructions_.emplace_back(plan_.text(task.prompt));
@@ -61,7 +74,7 @@ Result<std::shared_ptr<const stage::SharedAssets>> SharedPlan::assets(
   for (const Loaded& loaded : loaded_) {
     if (std::ranges::includes(loaded.tasks, wanted)) return loaded.assets;
   }
-  PROBE_ASSIGN(const std::string root, find_asset_root(asset_root_));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(asset_root_));
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan_, root, wanted));
   loaded_.push_back({std::move(wanted), assets});
   return assets;
@@ -78,8 +91,8 @@ std::string task_place(const SharedPlan& plan, std::uint32_t task) {
 
 namespace {
 
-vlaprobe_plan* handle_of(plan::Plan plan, const vlaprobe_plan_options& options) {
-  return new vlaprobe_plan{std::make_shared<SharedPlan>(std::move(plan), text_of(options.assets))};
+vlaprobe_plan* handle_of(plan::Plan plan, AssetRoot assets) {
+  return new vlaprobe_plan{std::make_shared<SharedPlan>(std::move(plan), std::move(assets))};
 }
 
 void write_hex(const std::array<std::uint8_t, 32>& id, char (&out)[65]) {
@@ -105,7 +118,7 @@ int32_t vlaprobe_compile(const char* const* files, size_t count,
     if (count == 0) return api::usage("there is no file to compile");
     PROBE_ASSIGN(const std::vector<std::string> paths, api::read_texts(files, count, "files"));
     PROBE_ASSIGN(Compilation compiled,
-                 compile::compile_files(paths, {.assets = api::text_of(given.assets),
+                 compile::compile_files(paths, {.assets = api::folders_of(given.assets),
                                                 .library = api::text_of(given.library),
                                                 .suite = api::text_of(given.suite),
                                                 .tasks = api::text_of(given.tasks)}));
@@ -113,7 +126,8 @@ int32_t vlaprobe_compile(const char* const* files, size_t count,
     json = render_json(compiled.diagnostics, compiled.sources);
     if (!compiled.ok) return api::usage(said);
     PROBE_ASSIGN(plan::Plan made, plan::Plan::from_bytes(std::move(compiled.plan)));
-    *plan = api::handle_of(std::move(made), given);
+    AssetRoot assets = compile::root_for(made, compiled.asset_root);
+    *plan = api::handle_of(std::move(made), std::move(assets));
     (*plan)->shared->only_used_suites =
         !(*plan)->shared->plan().suites().empty() && compiled.own_suites.empty();
     (*plan)->shared->warnings = {std::move(said), std::move(json)};
@@ -130,7 +144,8 @@ int32_t vlaprobe_plan_open(const char* path, const vlaprobe_plan_options* option
     PROBE_TRY(api::needs({{path, "path"}, {plan, "plan"}}));
     PROBE_ASSIGN(const vlaprobe_plan_options given, api::read_options(options));
     PROBE_ASSIGN(plan::Plan opened, plan::Plan::open(path));
-    *plan = api::handle_of(std::move(opened), given);
+    AssetRoot assets = compile::root_for_file(opened, path, api::folders_of(given.assets));
+    *plan = api::handle_of(std::move(opened), std::move(assets));
     return {};
   });
 }
@@ -152,6 +167,10 @@ void vlaprobe_plan_release(vlaprobe_plan* plan) { delete plan; }
 
 const char* vlaprobe_plan_root(const vlaprobe_plan* plan) {
   return plan == nullptr ? nullptr : plan->shared->root().c_str();
+}
+
+const char* vlaprobe_plan_assets(const vlaprobe_plan* plan) {
+  return plan == nullptr ? nullptr : plan->shared->asset_folders().c_str();
 }
 
 const void* vlaprobe_plan_bytes(const vlaprobe_plan* plan, size_t* size) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/api/vlaprobe.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/stage/assets.h"
@@ -17,13 +18,14 @@ namespace probe::api {
 // Shared by all that was made of the plan.
 class SharedPlan {
  public:
-  // `assets`: their folder, empty: found by itself when they are first needed.
-  SharedPlan(plan::Plan plan, std::string assets);
+  // `assets`: empty: found by itself when they are first needed.
+  SharedPlan(plan::Plan plan, AssetRoot assets);
 
   const plan::Plan& plan() const { return plan_; }
   const std::string& root() const { return root_; }
-  const std::string& asset_root() const { return asset_root_; }
+  const AssetRoot& asset_root() const { return asset_root_; }
   // With zero bytes at their ends.
+  const std::string& asset_folders() const { return asset_folders_; }  // one a line
   const std::string& name(std::uint32_t task) const { return names_[task]; }
   const std::string& instruction(std::uint32_t task) const { return instructions_[task]; }
   const std::string& object_name(std::uint32_t object) const { return objects_[object]; }
@@ -53,7 +55,9 @@ class SharedPlan {
   };
 
   plan::Plan plan_;
-  std::string root_, asset_root_;
+  std::string root_;
+  AssetRoot asset_root_;
+  std::string asset_folders_;
   std::vector<std::string> names_, instructions_, objects_, suites_, prefixes_;
   mutable std::mutex mutex_;  // what follows
   mutable std::vector<Loaded> loaded_;

@@ -134,8 +134,9 @@ typedef struct vlaprobe_plan vlaprobe_plan;
 /* NULL and 0 are the defaults. */
 typedef struct vlaprobe_plan_options {
   uint32_t size; /* sizeof(vlaprobe_plan_options) */
-  const char*
-      assets; /* folder of meshes and robots; default: VLAPROBE_ASSETS, else beside the library */
+  /* Folders of meshes and robots, one a line; default: beside the texts, then VLAPROBE_ASSETS, else
+   * beside the library. */
+  const char* assets;
   const char* library; /* folder that holds std/; default: VLAPROBE_STD, else beside the library */
   const char* suite;   /* the one suite to compile; default: all */
   const char* tasks;   /* glob over tasks: only these are compiled; default: all */
@@ -157,6 +158,9 @@ VLAPROBE_EXPORT void vlaprobe_plan_release(vlaprobe_plan* plan);
 
 /* The content address, 64 hexadecimal digits. */
 VLAPROBE_EXPORT const char* vlaprobe_plan_root(const vlaprobe_plan* plan);
+/* The folders that its files are taken from, one a line, as an option `assets` takes them: those
+ * that were named and those beside its texts; "" where only those found by themselves are needed. */
+VLAPROBE_EXPORT const char* vlaprobe_plan_assets(const vlaprobe_plan* plan);
 /* The plan as a file has it. */
 VLAPROBE_EXPORT const void* vlaprobe_plan_bytes(const vlaprobe_plan* plan, size_t* size);
 /* Warnings of the compiler for people, "" where there are none, and as a JSON array. */

@@ -133,7 +133,7 @@ Result<AskSummary> ask(const plan::Plan& plan, const AskOptions& given) {
                    "the plan has one start alone, so that the arm `prior` has no other to show",
                    "--arms"};
   }
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
   // Assets are checked before the folder is touched: a plan that cannot be drawn leaves nothing.
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_seen(plan, queries)));
   const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));

@@ -14,6 +14,7 @@
 #include "runtime/ask/ask_record.h"
 #include "runtime/ask/models.h"
 #include "runtime/ask/queries.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/run/run.h"
 
@@ -52,7 +53,7 @@ struct AskOptions {
   int give_up_after = 5;
   bool accepts_any_certificate = false;  // of a server over TLS; stored and reported
   run::IfChanged if_changed = run::IfChanged::kRefuse;
-  std::string assets;  // asset root, see find_asset_root
+  AssetRoot assets;  // empty: found by itself
   // Called from asking threads, one call at a time.
   std::function<void(const AskProgress&)> progress;
   // Asked now and then, from a thread of the call's: true ends it once the questions that are at

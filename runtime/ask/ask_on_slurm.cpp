@@ -51,7 +51,8 @@ class AskWork final : public cluster::ArrayWork {
       add_words(words, "--questions", joined(choice.questions, as_it_is));
     add_words(words, "--arms", joined(choice.arms, [](Arm arm) { return word_of(arm); }));
     if (!options_.frames.empty()) add_words(words, "--frames", absolute_path(options_.frames));
-    if (!options_.assets.empty()) add_words(words, "--assets", absolute_path(options_.assets));
+    for (const std::string& folder : options_.assets.folders())
+      add_words(words, "--assets", absolute_path(folder));
     add_words(words, "--retries", std::to_string(options_.retries));
     add_words(words, "--give-up-after", std::to_string(options_.give_up_after));
     if (options_.if_changed == run::IfChanged::kContinue)

@@ -47,21 +47,31 @@ Status check_file(const std::string& file, const std::string& path, plan::AssetK
 
 }  // namespace
 
-Result<AssetCheck> AssetCheck::open(const std::string& root) {
-  PROBE_ASSIGN(Manifest manifest, read_manifest(root));
-  return AssetCheck(root, std::move(manifest));
+Result<AssetCheck> AssetCheck::open(const AssetRoot& root) {
+  AssetCheck check;
+  for (const std::string& folder : root.folders()) {
+    PROBE_ASSIGN(check.manifests_[folder], read_manifest(folder));
+  }
+  return check;
 }
 
-Status AssetCheck::operator()(const std::string& path, plan::AssetKind kind,
-                              const Sha256* hash) const {
-  const fs::path file = fs::path(root_) / path;
-  if (const ManifestEntry* entry = manifest_.find(path)) {
+const Manifest& AssetCheck::manifest(const std::string& folder) const {
+  const auto known = manifests_.find(folder);
+  if (known != manifests_.end()) return known->second;
+  auto read = read_manifest(folder);
+  return manifests_[folder] = read ? std::move(*read) : Manifest{};
+}
+
+Status AssetCheck::operator()(const std::string& folder, const std::string& path,
+                              plan::AssetKind kind, const Sha256* hash) const {
+  const fs::path file = fs::path(folder) / path;
+  if (const ManifestEntry* entry = manifest(folder).find(path)) {
     std::error_code error;
     const bool same_size = fs::file_size(file, error) == entry->bytes && !error;
     if (same_size && (hash == nullptr || to_hex(*hash) == entry->sha256)) return {};
   }
   scene::MeshLimits limits;
-  limits.asset_root = root_;
+  limits.asset_root = folder;
   limits.self_contained = true;
   const Status good = check_file(file.string(), path, kind, limits);
   if (good) return {};

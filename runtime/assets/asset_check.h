@@ -2,9 +2,11 @@
 // manifest vouches for is not read again.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "runtime/assets/manifest.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
@@ -14,17 +16,17 @@ namespace probe::assets {
 class AssetCheck {
  public:
   // Fails (kAsset) on a manifest that cannot be read.
-  static Result<AssetCheck> open(const std::string& root);
+  static Result<AssetCheck> open(const AssetRoot& root);
 
   // Reads the file as a run would and says what is wrong with it, without its path. A file whose
-  // size, and hash where it is known, are the manifest's is taken as good.
-  Status operator()(const std::string& path, plan::AssetKind kind, const Sha256* hash) const;
+  // size, and hash where it is known, are the manifest's is taken as good. `folder` may be another
+  // than those that were opened, beside a text: what is no manifest of ours vouches for nothing.
+  Status operator()(const std::string& folder, const std::string& path, plan::AssetKind kind,
+                    const Sha256* hash) const;
 
  private:
-  AssetCheck(std::string root, Manifest manifest)
-      : root_(std::move(root)), manifest_(std::move(manifest)) {}
-  std::string root_;
-  Manifest manifest_;
+  const Manifest& manifest(const std::string& folder) const;
+  mutable std::map<std::string, Manifest> manifests_;  // by folder
 };
 
 }  // namespace probe::assets

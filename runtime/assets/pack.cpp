@@ -91,6 +91,22 @@ std::string text_of(const PackOptions& options, const Extent& extent) {
       words);
 }
 
+// Who finds an object that is packed there.
+std::string finders(const PackOptions& options) {
+  fs::path folder = fs::path(options.to).lexically_normal();
+  if (folder.filename().empty()) folder = folder.parent_path();
+  const std::string name = folder.filename().string();
+  if (folder.parent_path().filename() != "objects") {
+    return fmt::format("a text finds it as objects/{0} in a folder of assets: `-o assets/objects/{0}` "
+                       "puts it there",
+                       name);
+  }
+  const auto shown = [](const fs::path& path) { return path.empty() ? "." : path.string(); };
+  const fs::path root = folder.parent_path().parent_path();
+  const fs::path texts = root.filename() == "assets" ? root.parent_path() : root;
+  return fmt::format("texts in `{}` find it; for others: `--assets {}`", shown(texts), shown(root));
+}
+
 // The mesh that is felt: the one named, or one called collision beside the one that is seen.
 std::string find_collision(const PackOptions& options) {
   if (!options.collision.empty()) return options.collision;
@@ -134,7 +150,7 @@ Result<Packed> pack_asset(const PackOptions& options) {
                             felt.parts, felt.parts == 1 ? "" : "s", size_text(size),
                             corner(seen.extent.min), corner(seen.extent.max),
                             felt.odd.empty() ? "" : "; " + felt.odd),
-                doubts_of(options, size, felt), text_of(options, seen.extent)};
+                doubts_of(options, size, felt), text_of(options, seen.extent), finders(options)};
 }
 
 }  // namespace probe::assets

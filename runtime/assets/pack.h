@@ -22,6 +22,7 @@ struct Packed {
   std::string made;                 // a sentence: size, triangles, convex parts
   std::vector<std::string> doubts;  // what is probably not meant, each with what helps
   std::string text;                 // lines of a .probe text that declare it; empty for a robot
+  std::string found = {};           // a sentence: which texts find it; empty for a robot
 };
 
 // Fails (kAsset, kUrdf, kIo, kUsage) as the readers do, and when `to` is there already.

@@ -30,12 +30,18 @@ int report(const Failure& failure) {
   return failure.code == Fault::kInternal ? kOurs : kOutside;
 }
 
-void add_asset_option(Verb verb, AssetOptions& options) {
-  verb.add_option("--assets", options.root,
-                  "asset folder (default: $VLAPROBE_ASSETS, then the one beside the program)");
+void add_asset_option(Verb verb, AssetOptions& options, bool is_in_help) {
+  const auto about = [&](const char* said) { return is_in_help ? said : ""; };
+  verb.add_option("--assets", options.folders,
+                  about("asset folder, and again for the next (default: beside F, then "
+                        "$VLAPROBE_ASSETS or the program's)"))
+      .no_extra_values();
   verb.add_option("--std", options.library,
-                  "folder that holds std/ (default: $VLAPROBE_STD, then dsl beside the program)");
+                  about("folder that holds std/ (default: $VLAPROBE_STD, then dsl beside the "
+                        "program)"));
 }
+
+AssetRoot root_of(const AssetOptions& options) { return AssetRoot::chosen(options.folders); }
 
 void add_text_verbs(Verb program, int& exit, PhraseDrawing draw_phrases) {
   add_check(program, exit);

@@ -21,7 +21,7 @@ struct AuditArguments {
 };
 
 int audit_verb(const AuditArguments& arguments) {
-  const auto root = find_asset_root(arguments.assets.root);
+  const auto root = find_asset_root(root_of(arguments.assets));
   if (!root) return report(root.failure());
   const auto library = compile::find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());

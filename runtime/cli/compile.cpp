@@ -16,7 +16,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                              const std::string& suite, bool want_plan, bool json,
                              bool chosen_only) {
   CompiledText text;
-  auto compiled = compile::compile_files(files, {.assets = assets.root,
+  auto compiled = compile::compile_files(files, {.assets = root_of(assets),
                                                  .library = assets.library,
                                                  .suite = suite,
                                                  .tasks = chosen_only ? assets.tasks : "",
@@ -43,6 +43,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   text.unused_phrases = std::move(compiled->unused_phrases);
   text.referring = std::move(compiled->referring);
   text.own_suites = std::move(compiled->own_suites);
+  text.asset_root = std::move(compiled->asset_root);
   text.tasks = compiled->tasks;
   text.starts = compiled->starts;
   return text;
@@ -54,8 +55,28 @@ void print_diagnostics(const CompiledText& text, bool json) {
   std::fflush(stdout);
 }
 
+namespace {
+
+void say_count(std::size_t warnings, const std::string& file) {
+  if (warnings == 0) return;
+  say("note: {} warning{}; `vlaprobe check {}` shows {}\n", warnings, warnings == 1 ? "" : "s", file,
+      warnings == 1 ? "it" : "them");
+}
+
+}  // namespace
+
+void say_briefly(const CompiledText& text, const std::string& file) {
+  if (text.exit != kFine) return print_diagnostics(text, false);
+  say_count(text.warnings, file);
+}
+
+void say_briefly(const Compilation& compilation, const std::string& file) {
+  if (!compilation.ok) return say("{}", render_text(compilation.diagnostics, compilation.sources));
+  say_count(compilation.diagnostics.size() - compilation.diagnostics.error_count(), file);
+}
+
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
-                          const std::string& suite, bool want_plan, bool json) {
+                          const std::string& suite, bool want_plan, bool json, bool brief) {
   CompiledText text = compile_quietly(files, assets, suite, want_plan, json);
   if (text.only_assets_missing && !assets.tasks.empty() && assets.tasks != "*") {
     CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true);
@@ -65,7 +86,11 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
     }
     text = std::move(chosen);
   }
-  print_diagnostics(text, json);
+  if (brief) {
+    say_briefly(text, files.front());
+  } else {
+    print_diagnostics(text, json);
+  }
   if (text.only_assets_missing) {
     say("note: --tasks GLOB takes only tasks that do not need these files\n");
   }

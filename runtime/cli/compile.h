@@ -19,6 +19,7 @@ struct CompiledText {
   std::vector<std::string> files;    // every file that was read, as it was found
   std::vector<std::string> unused_phrases;
   std::vector<ReferringWords> referring;
+  AssetRoot asset_root;                 // where files were looked for
   std::size_t tasks = 0, starts = 0;    // that were looked at
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use
 };
@@ -30,10 +31,16 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                              bool chosen_only = false);
 void print_diagnostics(const CompiledText& text, bool json);
 
+// What a verb says that has other things to say: mistakes as they are, of warnings how many there
+// are and who shows them.
+void say_briefly(const CompiledText& text, const std::string& file);
+void say_briefly(const Compilation& compilation, const std::string& file);
+
 // Diagnostics go to stderr as text, or to stdout as JSON with `json`. When nothing but assets is
 // missing and AssetOptions::tasks says which tasks are wanted, those alone are compiled, with a
 // note.
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
-                          const std::string& suite, bool want_plan, bool json = false);
+                          const std::string& suite, bool want_plan, bool json = false,
+                          bool brief = false);
 
 }  // namespace probe::cli

@@ -27,7 +27,7 @@ int draw_verb(const DrawArguments& arguments, PhraseDrawing draw_phrases) {
   if (arguments.phrases) return draw_phrases(loaded, arguments);
   const auto task = find_task(*loaded.plan, arguments.task, loaded.exit);
   if (!task) return loaded.exit;
-  auto root = find_asset_root(arguments.assets.root);
+  auto root = find_asset_root(loaded.assets);
   if (!root) return report(root.failure());
   auto view = inspect::top_view(*loaded.plan, *task, *root);
   if (!view) return report(view.failure());

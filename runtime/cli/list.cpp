@@ -7,6 +7,7 @@
 #include "runtime/base/counted.h"
 #include "runtime/base/say.h"
 #include "runtime/compile/library.h"
+#include "runtime/cli/compile.h"
 #include "runtime/cli/load.h"
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/task_json.h"
@@ -22,7 +23,7 @@ struct ListArguments {
 
 // A text is counted without making its plan: a sweep of a million episodes in a second.
 int count_text(const ListArguments& arguments) {
-  const auto root = find_asset_root(arguments.assets.root);
+  const auto root = find_asset_root(root_of(arguments.assets));
   if (!root) return report(root.failure());
   const auto library = compile::find_library_folders(arguments.assets.library);
   if (!library) return report(library.failure());
@@ -31,7 +32,7 @@ int count_text(const ListArguments& arguments) {
             {.asset_root = *root, .suite = arguments.suite, .library_folders = *library});
   if (!counted) return report(counted.failure());
   const Compilation& compilation = counted->compilation;
-  say("{}", render_text(compilation.diagnostics, compilation.sources));
+  say_briefly(compilation, arguments.file);
   if (!compilation.ok) return kUser;
   const Json numbers = {{"tasks", counted->counts.tasks}, {"episodes", counted->counts.episodes}};
   put("{}", arguments.json ? numbers.dump() + "\n"

@@ -4,6 +4,7 @@
 
 #include "compiler/diag/diagnostic.h"
 #include "runtime/cli/compile.h"
+#include "runtime/compile/files.h"
 #include "runtime/inspect/task_json.h"
 
 namespace probe::cli {
@@ -39,18 +40,20 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
   LoadedPlan loaded;
   Result<plan::Plan> plan = Failure{};
   if (path.ends_with(".probe")) {
-    CompiledText text = compile_text({path}, assets, suite, true);
+    CompiledText text = compile_text({path}, assets, suite, true, false, true);
     if (text.exit != kFine) {
       loaded.exit = text.exit;
       return loaded;
     }
     plan = plan::Plan::from_bytes(std::move(text.plan));
     loaded.is_text = true;
+    if (plan) loaded.assets = compile::root_for(*plan, text.asset_root);
     loaded.unused_phrases = std::move(text.unused_phrases);
     loaded.referring = std::move(text.referring);
     loaded.only_used_suites = plan && !plan->suites().empty() && text.own_suites.empty();
   } else {
     plan = plan::Plan::open(path);
+    if (plan) loaded.assets = compile::root_for_file(*plan, path, root_of(assets));
   }
   if (!plan) {
     loaded.exit = report(plan.failure());

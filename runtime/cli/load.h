@@ -15,6 +15,7 @@ namespace probe::cli {
 struct LoadedPlan {
   std::optional<plan::Plan> plan;
   int exit = kFine;
+  AssetRoot assets;                         // where its files lie; empty: found by itself
   bool is_text = false;                     // compiled just now
   std::vector<ReferringWords> referring;    // of a text
   std::vector<std::string> unused_phrases;  // of a text: "object.phrase" that no task refers by

@@ -16,7 +16,7 @@ void add_lsp(Verb app, int& exit) {
   verb.add_flag("--stdio", *by_stdio, "as without it");
   verb.callback([assets, by_stdio, &exit] {
     const auto code = lsp::serve(STDIN_FILENO, STDOUT_FILENO,
-                                 {.assets = assets->root, .library = assets->library});
+                                 {.assets = root_of(*assets), .library = assets->library});
     exit = code ? *code : report(code.failure());
   });
 }

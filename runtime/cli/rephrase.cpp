@@ -20,6 +20,7 @@
 #include "runtime/base/file.h"
 #include "runtime/base/glob.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/compile.h"
 #include "runtime/cli/load.h"
 #include "runtime/compile/library.h"
 #include "runtime/plan/later.h"
@@ -45,14 +46,14 @@ struct Analysed {
 
 Analysed analyse(const std::string& file, const AssetOptions& assets,
                  const std::string& suite = {}) {
-  const auto root = find_asset_root(assets.root);
+  const auto root = find_asset_root(root_of(assets));
   if (!root) return {std::nullopt, report(root.failure())};
   const auto library = compile::find_library_folders(assets.library);
   if (!library) return {std::nullopt, report(library.failure())};
   auto text = analyze_text(std::span(&file, 1),
                            {.asset_root = *root, .suite = suite, .library_folders = *library});
   if (!text) return {std::nullopt, report(text.failure())};
-  say("{}", render_text(text->compilation.diagnostics, text->compilation.sources));
+  say_briefly(text->compilation, file);
   if (!text->compilation.ok) return {std::nullopt, kUser};
   // Moved, not copied: the tasks' starts are views into the model.
   return {std::move(text).value(), kFine};
@@ -141,7 +142,7 @@ Result<std::map<std::string, Sha256>> starts_of(const RephraseArguments& argumen
                                                 const std::vector<sema::TaskId>& tasks) {
   std::set<std::string, std::less<>> names;
   for (const sema::TaskId task : tasks) names.insert(std::string(model.tasks[task].name));
-  PROBE_ASSIGN(const std::string root, find_asset_root(arguments.assets.root));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(root_of(arguments.assets)));
   PROBE_ASSIGN(const auto library, compile::find_library_folders(arguments.assets.library));
   PROBE_ASSIGN(auto built,
                build(std::span(&arguments.file, 1),
@@ -213,9 +214,9 @@ int rephrase_verb(const RephraseArguments& arguments) {
   inputs.push_back(arguments.file);
   if (const auto fits = assets::check_output(arguments.out, inputs); !fits)
     return report(fits.failure());
-  if (const auto root = find_asset_root(arguments.assets.root)) options->asset_root = *root;
   const Analysed analysed = analyse(arguments.file, arguments.assets, arguments.suite);
   if (!analysed.text) return analysed.exit;
+  options->asset_root = analysed.text->compilation.asset_root;
   const sema::Model& model = analysed.text->model;
   const std::vector<sema::TaskId> tasks = choose(model, arguments.suite, arguments.assets.tasks);
   if (tasks.empty()) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/cli/arguments.h"
 
@@ -25,13 +26,15 @@ int report(const Failure& failure);
 
 // Options every verb that compiles or opens assets has.
 struct AssetOptions {
-  std::string root;     // empty: found by itself
+  std::vector<std::string> folders;  // of assets, in order; none: found by itself
   std::string library;  // the folder that holds std/; empty: found by itself
   // Glob over the tasks that are wanted. Where the assets lack what others need, only these are
   // compiled; empty: all.
   std::string tasks;
 };
-void add_asset_option(Verb verb, AssetOptions& options);
+void add_asset_option(Verb verb, AssetOptions& options, bool is_in_help = true);
+// As they were named.
+AssetRoot root_of(const AssetOptions& options);
 
 // Each adds its verb; the callback stores the exit code. These need the compiler alone, no world,
 // no run; those that do are in full/.

@@ -26,7 +26,7 @@ std::vector<std::string> run_words(const run::RunOptions& options) {
   if (options.video != run::VideoChoice::kNone) {
     add("--video", options.video == run::VideoChoice::kAll ? "all" : "failures");
   }
-  if (!options.assets.empty()) add("--assets", absolute_path(options.assets));
+  for (const std::string& folder : options.assets.folders()) add("--assets", absolute_path(folder));
   add("--retries", std::to_string(options.retries));
   add("--give-up-after", std::to_string(options.give_up_after));
   if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");

@@ -12,7 +12,7 @@ namespace probe::compile {
 
 Result<Compilation> compile_files(const std::vector<std::string>& files,
                                   const FilesRequest& request) {
-  PROBE_ASSIGN(const std::string root, find_asset_root(request.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(request.assets));
   PROBE_ASSIGN(std::vector<std::string> library, find_library_folders(request.library));
   PROBE_ASSIGN(AssetInspector inspect, assets::AssetCheck::open(root));
   CompileOptions options{.asset_root = root,
@@ -28,6 +28,18 @@ Result<Compilation> compile_files(const std::vector<std::string>& files,
     };
   }
   return request.wants_plan ? build(files, options) : check(files, options);
+}
+
+AssetRoot root_for(const plan::Plan& plan, const AssetRoot& root) {
+  std::vector<std::string> paths;
+  for (const plan::AssetRecord& asset : plan.assets()) paths.emplace_back(plan.text(asset.path));
+  return root.kept_for(paths);
+}
+
+AssetRoot root_for_file(const plan::Plan& plan, const std::string& path, const AssetRoot& chosen) {
+  const auto root = find_asset_root(chosen);
+  if (!root) return chosen;
+  return root_for(plan, root->beside(std::span(&path, 1)));
 }
 
 bool lacks_only_assets(const Diagnostics& diagnostics) {

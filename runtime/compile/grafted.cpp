@@ -26,14 +26,14 @@ std::string find_text(const std::string& path, const std::vector<std::string>& f
 
 }  // namespace
 
-std::optional<AnalyzedText> metrics_text(const std::string& path, const std::string& assets,
+std::optional<AnalyzedText> metrics_text(const std::string& path, const AssetRoot& assets,
                                          const std::string& library) {
   if (!path.ends_with(".probe")) return std::nullopt;
   const auto folders = find_library_folders(library);
   if (!folders) return std::nullopt;
   const auto root = find_asset_root(assets);  // of metrics alone no asset is read
   const std::string file = find_text(path, *folders);
-  auto text = analyze_text(std::span(&file, 1), {.asset_root = root ? *root : std::string(),
+  auto text = analyze_text(std::span(&file, 1), {.asset_root = root ? *root : AssetRoot(),
                                                  .library_folders = *folders});
   if (!text || !text->compilation.ok || !is_metrics_alone(*text)) return std::nullopt;
   return std::move(text).value();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/emit/graft.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/plan/plan.h"
 #include "runtime/rejudge/events.h"
 
@@ -18,7 +19,7 @@ inline constexpr char kEventsText[] = "std/events.probe";
 // What `path` says when it is a text of metrics alone, looked for as it is named and then in the
 // standard library; nothing when it is another text or a plan, or has a mistake.
 // `assets` and `library` as of FilesRequest.
-std::optional<AnalyzedText> metrics_text(const std::string& path, const std::string& assets = {},
+std::optional<AnalyzedText> metrics_text(const std::string& path, const AssetRoot& assets = {},
                                          const std::string& library = {});
 
 struct GraftedPlan {

@@ -6,6 +6,7 @@
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
+#include "runtime/base/paths.h"
 #include "runtime/doctor/golden_starts.h"
 #include "runtime/render/renderer.h"
 #include "runtime/scene/mesh_cache.h"
@@ -67,10 +68,19 @@ Result<Sha256> check_manifest(const std::string& root, DoctorReport& report) {
 
 bool DoctorReport::fine() const { return asset_damage.empty() && (!golden || golden->fine()); }
 
-Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite) {
+Result<DoctorReport> examine(const AssetRoot& assets, const SuiteMaker& suite) {
   DoctorReport report;
-  PROBE_ASSIGN(report.asset_root, find_asset_root(assets));
-  PROBE_ASSIGN(const Sha256 manifest, check_manifest(report.asset_root, report));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(assets));
+  Sha256 manifest;
+  std::string golden_root;  // of the golden pictures
+  for (const std::string& folder : root.folders()) {
+    report.asset_root += (report.asset_root.empty() ? "" : ", ") + folder;
+    // Of several, a folder of one packed mug has none.
+    if (root.folders().size() > 1 && !is_there(folder + "/manifest.json")) continue;
+    PROBE_ASSIGN(manifest, check_manifest(folder, report));
+    if (golden_root.empty() && shown_in_golden(folder)) golden_root = folder;
+  }
+  if (golden_root.empty()) golden_root = root.folders().front();
   report.fingerprint = store::take_fingerprint(manifest);
   report.code_level = code_level();
   const std::string cpu = value_of(report.fingerprint, "cpu");
@@ -83,18 +93,18 @@ Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite)
   PROBE_ASSIGN(report.ray_engine, render::describe_ray_engine());
   report.mesh_cache = scene::default_mesh_cache();
   report.golden_folder = golden_folder();
-  report.own_assets = report.golden_folder.empty() || shown_in_golden(report.asset_root);
+  report.own_assets = report.golden_folder.empty() || shown_in_golden(golden_root);
   if (!report.own_assets) return report;
-  PROBE_ASSIGN(auto frames, draw_golden_frames(report.asset_root));
-  const auto plan = suite(report.asset_root);
-  auto starts = plan ? draw_first_frames(*plan, report.asset_root)
+  PROBE_ASSIGN(auto frames, draw_golden_frames(golden_root));
+  const auto plan = suite(golden_root);
+  auto starts = plan ? draw_first_frames(*plan, golden_root)
                      : Result<std::vector<GoldenFrame>>(plan.failure());
   if (starts) {
     for (GoldenFrame& frame : *starts) frames.push_back(std::move(frame));
   } else {
     report.no_suite = to_text(starts.failure());
   }
-  PROBE_ASSIGN(const GoldenSettle settle, settle_golden_objects(report.asset_root));
+  PROBE_ASSIGN(const GoldenSettle settle, settle_golden_objects(golden_root));
   report.settle_state = to_hex(settle.state);
   if (!report.golden_folder.empty()) {
     PROBE_ASSIGN(report.golden, check_golden(report.golden_folder, frames, settle));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/doctor/golden_frames.h"
 #include "runtime/plan/plan.h"
 
@@ -18,7 +19,7 @@ struct DoctorReport {
   std::string ray_engine;             // Embree's version and packet sizes
   std::vector<std::string> cpu_sets;  // instruction sets that libraries choose their code by
   std::string code_level;             // of the hot loops: x86-64-v2, v3 or v4
-  std::string asset_root;
+  std::string asset_root;             // its folders, as they are read out
   int asset_files = 0;                    // of the manifest
   std::vector<std::string> asset_damage;  // "path: has other bytes"
   std::string mesh_cache;                 // folder, empty: none
@@ -32,10 +33,10 @@ struct DoctorReport {
 
 // The suite whose scenes are drawn, compiled with the asset folder that is examined, or why there
 // is none.
-using SuiteMaker = std::function<Result<plan::Plan>(const std::string& asset_root)>;
+using SuiteMaker = std::function<Result<plan::Plan>(const AssetRoot& asset_root)>;
 
 // `assets` as find_asset_root. Fails when there is no asset folder or its objects cannot be drawn.
-Result<DoctorReport> examine(const std::string& assets, const SuiteMaker& suite);
+Result<DoctorReport> examine(const AssetRoot& assets, const SuiteMaker& suite);
 
 std::string to_json(const DoctorReport& report, const std::string& version);
 std::string to_text(const DoctorReport& report, const std::string& version);

@@ -110,8 +110,8 @@ std::string golden_folder() {
   return {};
 }
 
-bool shown_in_golden(const std::string& asset_root) {
-  const auto here = read_file((fs::path(asset_root) / "manifest.json").string());
+bool shown_in_golden(const std::string& folder) {
+  const auto here = read_file((fs::path(folder) / "manifest.json").string());
   return here && std::ranges::any_of(own_places("assets"), [&](const fs::path& place) {
            const auto own = read_file((place / "manifest.json").string());
            return own && *here == *own;

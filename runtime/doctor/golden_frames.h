@@ -15,7 +15,7 @@ namespace probe::doctor {
 // `golden_frames` of the tests of the source tree the program was built from; empty if not there.
 std::string golden_folder();
 // Whether these are the assets that the golden pictures show: the manifest is that source tree's.
-bool shown_in_golden(const std::string& asset_root);
+bool shown_in_golden(const std::string& folder);
 // The texts whose scenes' first frames are among them, of the same source tree; none if not there.
 std::vector<std::string> golden_suites();
 

@@ -7,9 +7,9 @@
 namespace probe::inspect {
 
 Result<robot::RobotModel> checked_urdf(const plan::Plan& plan, std::uint32_t asset,
-                                       const std::string& asset_root) {
+                                       const AssetRoot& asset_root) {
   const plan::AssetRecord& record = plan.assets()[asset];
-  const std::string path = asset_root + "/" + std::string(plan.text(record.path));
+  const std::string path = asset_root.file(plan.text(record.path));
   PROBE_ASSIGN(const std::string bytes, read_file(path, {.code = Fault::kAsset}));
   if (sha256(bytes) != plan::to_sha256(record.sha256))
     return Failure{Fault::kAsset, "has other bytes than when the plan was built", path};

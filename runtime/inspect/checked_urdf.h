@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/robot/urdf.h"
@@ -13,6 +14,6 @@ namespace probe::inspect {
 // `asset`: of ASST. Fails (kAsset) when the file is not the one that the plan was built with,
 // (kUrdf) when it cannot be used.
 Result<robot::RobotModel> checked_urdf(const plan::Plan& plan, std::uint32_t asset,
-                                       const std::string& asset_root);
+                                       const AssetRoot& asset_root);
 
 }  // namespace probe::inspect

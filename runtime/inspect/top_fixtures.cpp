@@ -40,7 +40,7 @@ double open_end(const plan::FixtureJointRecord& joint) {
 class PosedFixture {
  public:
   static Result<PosedFixture> create(const plan::Plan& plan, const plan::FixtureRecord& record,
-                                     const std::string& asset_root) {
+                                     const AssetRoot& asset_root) {
     PROBE_ASSIGN(robot::RobotModel model, checked_urdf(plan, record.urdf, asset_root));
     std::vector<std::string> names;
     for (const plan::FixtureJointRecord& joint : plan.joints(record))
@@ -69,7 +69,7 @@ class PosedFixture {
 
 // How one fixture stands, joints at `starts`; `frames` gets those of its parts, by their number.
 Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
-                   std::span<const double> starts, const std::string& asset_root,
+                   std::span<const double> starts, const AssetRoot& asset_root,
                    std::map<std::uint32_t, Pose>* frames, TopView* view) {
   PROBE_ASSIGN(const PosedFixture posed, PosedFixture::create(plan, record, asset_root));
   const std::string folder = std::filesystem::path(posed.model().path).parent_path().string();
@@ -104,7 +104,7 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
 }  // namespace
 
 Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
-                    const std::string& asset_root, TopView* view) {
+                    const AssetRoot& asset_root, TopView* view) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const std::vector<double> starts =
       task.episodes.count == 0

@@ -139,7 +139,7 @@ struct Mounted {
 
 // The cameras as they stand when the robot is in its initial position.
 Result<std::vector<Mounted>> cameras_of(const plan::Plan& plan, const plan::TaskRecord& task,
-                                        const std::string& asset_root) {
+                                        const AssetRoot& asset_root) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& record = plan.robots()[scene.robot];
   PROBE_ASSIGN(const robot::RobotModel model, checked_urdf(plan, record.urdf, asset_root));
@@ -196,7 +196,7 @@ std::vector<Point> box_outline(const std::array<Vec3, 3>& axes) {
 }
 
 Result<TopView> top_view(const plan::Plan& plan, std::uint32_t index,
-                         const std::string& asset_root) {
+                         const AssetRoot& asset_root) {
   const plan::TaskRecord& task = plan.tasks()[index];
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const plan::RobotRecord& robot = plan.robots()[scene.robot];

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/geometry.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
@@ -76,7 +77,7 @@ struct TopView {
 
 // `asset_root` as the plan's paths are relative to. Fails (kAsset) when the URDF is not the
 // one the plan was built with, (kUrdf) when it cannot be used.
-Result<TopView> top_view(const plan::Plan& plan, std::uint32_t task, const std::string& asset_root);
+Result<TopView> top_view(const plan::Plan& plan, std::uint32_t task, const AssetRoot& asset_root);
 
 // A box seen from above: its outline around (0, 0) without edges shorter than a nanometre. `axes`
 // are half of each side, in world.

@@ -325,7 +325,7 @@ class TextServer final : public Server {
 }  // namespace
 
 Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, Send send) {
-  PROBE_ASSIGN(std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(AssetRoot root, find_asset_root(options.assets));
   PROBE_ASSIGN(std::vector<std::string> library, compile::find_library_folders(options.library));
   return std::unique_ptr<Server>(std::make_unique<TextServer>(
       options, language::Setting{std::move(root), std::move(library)}, std::move(send)));

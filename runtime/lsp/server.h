@@ -8,12 +8,13 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::lsp {
 
 struct ServerOptions {
-  std::string assets;   // their folder; empty: found by itself
+  AssetRoot assets;     // empty: found by itself
   std::string library;  // the folder that holds std/; empty: found by itself
   // How long nothing is typed until the whole check begins.
   std::chrono::milliseconds pause{250};

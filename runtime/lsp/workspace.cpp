@@ -95,7 +95,7 @@ std::vector<const Diagnostic*> Program::said(FileId file) const {
 }
 
 std::optional<WholeCheck> check_whole(const std::string& root, const language::Unsaved& unsaved,
-                                      const std::string& assets, const std::string& library,
+                                      const AssetRoot& assets, const std::string& library,
                                       const std::atomic<bool>& stop) {
   auto checked = compile::compile_files({root}, {.assets = assets,
                                                  .library = library,

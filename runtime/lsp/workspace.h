@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "compiler/language/snapshot.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/lsp/documents.h"
 
 namespace probe::lsp {
@@ -35,7 +36,7 @@ struct WholeCheck {
 };
 // The whole check with this machine's assets; nothing when it was stopped or failed.
 std::optional<WholeCheck> check_whole(const std::string& root, const language::Unsaved& unsaved,
-                                      const std::string& assets, const std::string& library,
+                                      const AssetRoot& assets, const std::string& library,
                                       const std::atomic<bool>& stop);
 
 class Workspace {

@@ -56,7 +56,7 @@ Status check_callers_policy(const plan::Plan& plan, const RunOptions& options, c
   PROBE_ASSIGN(const store::Trace trace, store::read_stored_trace(*row));
   const EpisodeJob job{*task, static_cast<std::uint32_t>(row->episode), row->seed};
 
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
   const std::uint32_t tasks[] = {*task};
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, *task, std::move(assets)));

@@ -138,7 +138,7 @@ class Only {
 
 Result<servers::ServedActions> only_actions(const plan::Plan& plan,
                                             std::span<const std::uint32_t> tasks,
-                                            const std::string& assets) {
+                                            const AssetRoot& assets) {
   Only only;
   std::set<const plan::RobotRecord*> seen;
   for (const std::uint32_t task : tasks) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/policies.h"
 #include "runtime/servers/served.h"
@@ -31,7 +32,7 @@ Result<std::shared_ptr<const servers::RecordedEpisodes>> recorded_steps(const st
 // are. Both fail (kUsage) where there are several.
 Result<servers::ServedActions> only_actions(const plan::Plan& plan,
                                             std::span<const std::uint32_t> tasks,
-                                            const std::string& assets);
+                                            const AssetRoot& assets);
 Result<servers::ServedActions> only_actions(const std::string& dir);
 
 // Which seed the episodes of a run are of, where its policy draws, so that of another seed they

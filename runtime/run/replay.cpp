@@ -8,7 +8,6 @@
 #include <memory>
 #include <utility>
 
-#include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/policy/live.h"
 #include "runtime/run/episode.h"
@@ -197,7 +196,7 @@ Result<ReplayReport> replay(const std::string& dir, const std::string& task, int
   report.fingerprint_differences =
       store::differences(recorded, store::take_fingerprint(stage::asset_digest(plan)));
 
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, store::find_run_assets(dir, options.assets));
   const std::uint32_t tasks[] = {job.task};
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, job.task, std::move(assets)));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::run {
@@ -16,7 +17,7 @@ struct ReplayOptions {
   std::string png;      // path of a picture to write; empty: none
   int png_step = 0;     // the observation at this step: 0 is the first, the trace's length the last
   std::string camera;   // of several, the one that is shown; empty: all, side by side
-  std::string assets;   // asset root, see find_asset_root
+  AssetRoot assets;     // empty: found by itself
 };
 
 struct ReplayReport {

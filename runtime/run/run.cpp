@@ -293,7 +293,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
   PROBE_ASSIGN(Selection selection,
                select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
 
   RunSummary summary;
   summary.notes = selection.notes;
@@ -315,6 +315,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
       selection.suite,
       selection.seeds,
       fingerprint};
+  for (const std::string& folder : options.assets.folders())
+    record.asset_folders.push_back(absolute_path(folder));
   PROBE_ASSIGN(options.out, choose_folder(options, record, summary.notes));
   options.name = record.identity.policy;
   PROBE_ASSIGN(auto store, store::Store::open(options.out, record, plan.bytes()));

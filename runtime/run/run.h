@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/policy/live.h"
 #include "runtime/run/policies.h"
@@ -70,7 +71,7 @@ struct RunOptions {
   // Valid episodes that did not succeed are not stored; a later call does them again.
   bool only_success = false;
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
-  std::string assets;                      // asset root, see find_asset_root
+  AssetRoot assets;                        // empty: found by itself
   // Called from worker threads, one call at a time.
   std::function<void(const RunProgress&)> progress;
   // Asked before and behind each episode, by any worker: true ends the call (kUsage). The episodes

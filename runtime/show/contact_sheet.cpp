@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "runtime/base/asset_root.h"
 #include "runtime/base/glob.h"
 #include "runtime/plan/roles.h"
 #include "runtime/scene/image.h"
@@ -67,7 +66,7 @@ Status write_contact_sheet(const std::string& dir, const std::string& png_path,
   if (rows.empty())
     return Failure{Fault::kUsage, "no stored episode of `" + options.tasks + "`", dir};
   PROBE_ASSIGN(const plan::Plan plan, store::open_run_plan(dir));
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, store::find_run_assets(dir, options.assets));
 
   // Rows are ordered by task: one view at a time is enough.
   std::string task_name;

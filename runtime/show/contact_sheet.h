@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::show {
@@ -12,7 +13,7 @@ struct SheetOptions {
   int columns = 6;
   int cell_width = 213;  // pixels of one picture; a cell shows the first and the last
   std::string camera;    // of several, the one that is shown; empty: all, side by side
-  std::string assets;    // asset root, see find_asset_root
+  AssetRoot assets;      // empty: found by itself
 };
 
 // A PNG grid of the first and last picture of every stored episode, with captions, drawn from the

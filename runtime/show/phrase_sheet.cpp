@@ -69,9 +69,9 @@ std::optional<std::uint16_t> body_of(const plan::Plan& plan, std::uint32_t task,
 }  // namespace
 
 Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
-                     const std::string& png_path, const std::string& assets_folder) {
+                     const std::string& png_path, const AssetRoot& asset_root) {
   if (rows.empty()) return Failure{Fault::kUsage, "no phrase refers to an object", ""};
-  PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(asset_root));
   PROBE_ASSIGN(Lettering* const lettering, Lettering::shared());
   const int step = kCrop + kMargin;
   Picture sheet = make_picture(kCrop + kWordsWidth + 3 * kMargin,

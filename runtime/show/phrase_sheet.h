@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 
@@ -21,6 +22,6 @@ struct PhraseRow {
 // the words beside it. Rows of one task stand together. Fails (kUsage) without rows or when
 // the object is no body of the task.
 Status write_phrases(const plan::Plan& plan, std::span<const PhraseRow> rows,
-                     const std::string& png_path, const std::string& assets = {});
+                     const std::string& png_path, const AssetRoot& asset_root = {});
 
 }  // namespace probe::show

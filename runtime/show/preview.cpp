@@ -10,7 +10,7 @@ namespace probe::show {
 
 Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::string& png_path,
                      const SheetOptions& options) {
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));
@@ -35,7 +35,7 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
 }
 
 Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
-                   const std::string& png_path, const std::string& assets_folder,
+                   const std::string& png_path, const AssetRoot& asset_root,
                    const std::string& camera) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const std::size_t count = plan.episodes(record).size();
@@ -45,7 +45,7 @@ Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t ind
                        std::to_string(count) + " starts, counted from 0",
                    ""};
   }
-  PROBE_ASSIGN(const std::string root, find_asset_root(assets_folder));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(asset_root));
   const std::uint32_t tasks[] = {task};
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(plan, root, tasks));
   PROBE_ASSIGN(auto stage, stage::Stage::create(plan, task, assets));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/show/contact_sheet.h"
@@ -18,7 +19,7 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
 // One start's first picture in the camera's own size, as a policy gets it. `camera` as in
 // ReplayOptions.
 Status write_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t index,
-                   const std::string& png_path, const std::string& assets = {},
+                   const std::string& png_path, const AssetRoot& asset_root = {},
                    const std::string& camera = {});
 
 }  // namespace probe::show

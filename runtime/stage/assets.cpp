@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <sstream>
 
@@ -36,13 +37,24 @@ scene::CollisionShape make_primitive(const robot::Primitive& primitive) {
   return scene::make_box_shape(primitive.half);
 }
 
+// What a file names may not lie outside the folder that has it.
+scene::MeshLimits limits_in(const AssetRoot& root, std::string_view path) {
+  scene::MeshLimits limits;
+  limits.asset_root = root.holder(path);
+  limits.self_contained = true;
+  return limits;
+}
+
 // Each collision mesh of a link, one convex part a mesh, and its primitives, in the link's frame.
+// `named`: the path under the root of a mesh that the URDF names.
 Result<std::shared_ptr<const scene::CollisionShape>> load_link_shape(
-    const robot::Link& link, const std::string& urdf_folder, const scene::MeshLimits& limits) {
+    const robot::Link& link, const AssetRoot& root,
+    const std::function<std::string(const robot::MeshRef&)>& named) {
   std::vector<std::vector<Vec3>> components;
   for (const robot::MeshRef& ref : link.collisions) {
+    const std::string path = named(ref);
     PROBE_ASSIGN(scene::TriangleSoup soup,
-                 scene::load_triangles(urdf_folder + ref.path, ref.scale, limits));
+                 scene::load_triangles(root.file(path), ref.scale, limits_in(root, path)));
     for (Vec3& point : soup.vertices) point = ref.origin.apply(point);
     components.push_back(std::move(soup.vertices));
   }
@@ -102,7 +114,7 @@ class SharedAssets::Loader {
                      fixture.urdf};
     }
     PROBE_ASSIGN(robot::RobotModel model,
-                 robot::load_urdf((fs::path(assets_.root_) / fixture.urdf).string()));
+                 robot::load_urdf(assets_.root_.file(fixture.urdf)));
     PROBE_ASSIGN(UrdfParts parts, parts_of(std::move(model), fixture.urdf));
     assets_.others_.push_back(
         std::make_unique<LoadedFixture>(LoadedFixture{fixture, std::move(parts), false}));
@@ -130,7 +142,7 @@ class SharedAssets::Loader {
   }
 
   std::string path_of(std::uint32_t asset) const {
-    return (fs::path(assets_.root_) / plan_.text(plan_.assets()[asset].path)).string();
+    return assets_.root_.file(plan_.text(plan_.assets()[asset].path));
   }
 
   // That the file is there with the plan's bytes. Each file once.
@@ -146,7 +158,8 @@ class SharedAssets::Loader {
     if (!bytes)
       return Failure{
           Fault::kAsset,
-          "this file of the plan is not in " + assets_.root_ + "; --assets names another folder",
+          "this file of the plan is not in " + assets_.root_.text() +
+              "; --assets names other folders, one each time",
           name};
     const Sha256 hash = sha256(std::string_view(*bytes));
     if (bytes->size() != record.byte_size || hash.bytes != record.sha256) {
@@ -158,7 +171,7 @@ class SharedAssets::Loader {
   Status mesh(std::uint32_t asset) {
     if (assets_.meshes_.contains(asset)) return {};
     PROBE_TRY(verify(asset));
-    PROBE_ASSIGN(assets_.meshes_[asset], scene::shared_mesh(path_of(asset), {1, 1, 1}, limits()));
+    PROBE_ASSIGN(assets_.meshes_[asset], scene::shared_mesh(path_of(asset), {1, 1, 1}, limits(asset)));
     return {};
   }
 
@@ -166,7 +179,7 @@ class SharedAssets::Loader {
     if (assets_.shapes_.contains(asset)) return {};
     PROBE_TRY(verify(asset));
     PROBE_ASSIGN(scene::CollisionShape shape,
-                 scene::load_collision_mesh(path_of(asset), {1, 1, 1}, limits()));
+                 scene::load_collision_mesh(path_of(asset), {1, 1, 1}, limits(asset)));
     assets_.shapes_[asset] = std::make_shared<scene::CollisionShape>(std::move(shape));
     return {};
   }
@@ -178,7 +191,7 @@ class SharedAssets::Loader {
       PROBE_TRY(mesh(object.visual));
       std::shared_ptr<const scene::Mesh> seen = assets_.mesh(object.visual);
       if (object.scale != 0) {
-        PROBE_ASSIGN(seen, scene::shared_mesh(path_of(object.visual), scale, limits()));
+        PROBE_ASSIGN(seen, scene::shared_mesh(path_of(object.visual), scale, limits(object.visual)));
       }
       if (object.paint[3] != 0) {
         const auto& rgb = object.paint;
@@ -210,7 +223,7 @@ class SharedAssets::Loader {
 
   Status scaled_shape(std::uint32_t index, const Vec3& scale) {
     const plan::ObjectRecord& object = plan_.objects()[index];
-    auto scaled = scene::load_collision_mesh(path_of(object.collision), scale, limits());
+    auto scaled = scene::load_collision_mesh(path_of(object.collision), scale, limits(object.collision));
     if (!scaled) {
       return Failure{scaled.failure().code,
                      "object `" + std::string(plan_.text(object.name)) +
@@ -291,8 +304,10 @@ class SharedAssets::Loader {
 
   // What the links of a URDF (a path under the root) look like and collide with.
   Result<UrdfParts> parts_of(robot::RobotModel model, const std::string& urdf) const {
-    const std::string folder =
-        (fs::path(assets_.root_) / fs::path(urdf).parent_path()).string() + "/";
+    // A path under the root: a mesh may be of another thing than its URDF.
+    const auto named = [&](const robot::MeshRef& ref) {
+      return (fs::path(urdf).parent_path() / ref.path).lexically_normal().string();
+    };
     UrdfParts parts;
     parts.model = std::move(model);
     for (std::size_t i = 0; i < parts.model.links.size(); ++i) {
@@ -301,7 +316,9 @@ class SharedAssets::Loader {
         UrdfParts::LinkVisual visual;
         visual.link = static_cast<int>(i);
         visual.origin = ref.origin;
-        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(folder + ref.path, ref.scale, limits()));
+        const std::string path = named(ref);
+        PROBE_ASSIGN(visual.mesh, scene::shared_mesh(assets_.root_.file(path), ref.scale,
+                                                     limits_in(assets_.root_, path)));
         parts.visuals.push_back(std::move(visual));
       }
       for (const robot::DrawnPrimitive& drawn : link.drawn) {
@@ -312,17 +329,14 @@ class SharedAssets::Loader {
       }
       parts.shapes.emplace_back();
       if (link.can_collide()) {
-        PROBE_ASSIGN(parts.shapes.back(), load_link_shape(link, folder, limits()));
+        PROBE_ASSIGN(parts.shapes.back(), load_link_shape(link, assets_.root_, named));
       }
     }
     return parts;
   }
 
-  scene::MeshLimits limits() const {
-    scene::MeshLimits limits;
-    limits.asset_root = assets_.root_;
-    limits.self_contained = true;
-    return limits;
+  scene::MeshLimits limits(std::uint32_t asset) const {
+    return limits_in(assets_.root_, plan_.text(plan_.assets()[asset].path));
   }
 
   const plan::Plan& plan_;
@@ -331,7 +345,7 @@ class SharedAssets::Loader {
 };
 
 Result<std::shared_ptr<const SharedAssets>> SharedAssets::load(const plan::Plan& plan,
-                                                               const std::string& root,
+                                                               const AssetRoot& root,
                                                                std::span<const std::uint32_t> tasks,
                                                                std::span<const Fixture> fixtures) {
   // Here, because every simulation begins here. It is a thing of the process: once is enough.

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
 #include "runtime/robot/urdf.h"
@@ -54,11 +55,10 @@ class SharedAssets {
   // `fixtures` stand in the scene of every task behind those that the plan puts there; their files
   // are taken as they are.
   static Result<std::shared_ptr<const SharedAssets>> load(const plan::Plan& plan,
-                                                          const std::string& root,
+                                                          const AssetRoot& root,
                                                           std::span<const std::uint32_t> tasks,
                                                           std::span<const Fixture> fixtures = {});
 
-  const std::string& root() const { return root_; }
   // By index into the plan's assets; null for an index that was not loaded.
   std::shared_ptr<const scene::Mesh> mesh(std::uint32_t asset) const;
   std::shared_ptr<const scene::CollisionShape> shape(std::uint32_t asset) const;
@@ -79,7 +79,7 @@ class SharedAssets {
 
  private:
   class Loader;
-  std::string root_;
+  AssetRoot root_;
   std::shared_ptr<render::SceneStore> pictures_;
   std::map<std::uint32_t, std::shared_ptr<const scene::Mesh>> meshes_;
   std::map<std::uint32_t, std::shared_ptr<const scene::CollisionShape>> shapes_;

@@ -23,4 +23,11 @@ Result<plan::Plan> open_run_plan(const std::string& dir) {
                  path};
 }
 
+Result<AssetRoot> find_run_assets(const std::string& dir, const AssetRoot& chosen) {
+  if (!chosen.empty()) return find_asset_root(chosen);
+  PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
+  const AssetRoot recorded = AssetRoot::chosen(record.asset_folders);
+  return find_asset_root(recorded.check() ? recorded : AssetRoot());
+}
+
 }  // namespace probe::store

@@ -50,6 +50,7 @@ std::string record_to_text(const RunRecord& record) {
                {"fingerprint", to_json(record.fingerprint)}};
   if (is_live) json["live"] = record.identity.live;
   if (record.identity.only_success) json["only_success"] = true;
+  if (!record.asset_folders.empty()) json["asset_folders"] = record.asset_folders;
   return json.sorted().dump();
 }
 
@@ -92,6 +93,13 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   for (const auto& seed : *seeds) {
     if (!seed.is_number_integer()) return bad_record("seeds", "a list of whole numbers", where);
     record.seeds.push_back(seed.get<int>());
+  }
+  if (const Json* folders = json.find("asset_folders")) {
+    if (!folders->is_array()) return bad_record("asset_folders", "a list of texts", where);
+    for (const auto& folder : *folders) {
+      if (!folder.is_string()) return bad_record("asset_folders", "a list of texts", where);
+      record.asset_folders.push_back(folder.get<std::string>());
+    }
   }
   PROBE_ASSIGN(const std::string fingerprint, record_text(json, "fingerprint", where));
   auto read = fingerprint_from_json(fingerprint);

@@ -48,6 +48,9 @@ struct RunRecord {
   std::vector<int> seeds;
   Fingerprint fingerprint;  // of the call that made the folder
   int schema = kSchemaVersion;
+  // Where that call had its assets from, absolute; none: they were found by themselves. A hint for
+  // who reads the run: whether the files are the plan's is seen from their bytes.
+  std::vector<std::string> asset_folders = {};
 };
 
 // What is said of a folder with `RunIdentity::only_success` in place of a rate.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/compile/files.h"
 #include "runtime/inspect/svg.h"
@@ -124,15 +123,13 @@ bool Painter::compile(const Wish& wish) {
     return false;
   }
   auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
-  auto root = find_asset_root(setting_.assets);
-  if (!plan || !root) {
-    const Failure& failure = plan ? root.failure() : plan.failure();
-    say(wish, {{"kind", "broken"}, {"errors", 1}, {"message", to_text(failure)}});
+  if (!plan) {
+    say(wish, {{"kind", "broken"}, {"errors", 1}, {"message", to_text(plan.failure())}});
     return false;
   }
   std::vector<bool> own = own_tasks(*plan, setting_.file);
   auto shown = std::make_shared<const Shown>(
-      Shown{std::move(*plan), std::move(*root), std::move(compiled->referring), std::move(own)});
+      Shown{std::move(*plan), std::move(compiled->asset_root), std::move(compiled->referring), std::move(own)});
   texts_ = wish.texts;
   read_.clear();
   for (std::uint32_t i = 0; i < compiled->sources.size(); ++i) {

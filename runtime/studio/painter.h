@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/stage/stage.h"
 #include "runtime/studio/shown.h"
 #include "runtime/wire/listener.h"
@@ -21,7 +22,7 @@ namespace probe::studio {
 
 struct Setting {
   std::string file;    // the text to show
-  std::string assets;  // as of compile::FilesRequest
+  AssetRoot assets;  // as of compile::FilesRequest
   std::string library;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/emit/compile.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/base/json.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
@@ -17,7 +18,7 @@ namespace probe::studio {
 
 struct Shown {
   plan::Plan plan;
-  std::string asset_root;
+  AssetRoot asset_root;
   std::vector<ReferringWords> referring;
   std::vector<bool> is_own;  // by task of the plan: written in the text itself, not in what it uses
 };

@@ -4,13 +4,15 @@
 #include <memory>
 #include <string>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::studio {
 
 struct StudioOptions {
   std::string file;             // the text; it need not be there yet
-  std::string assets, library;  // as of compile::FilesRequest
+  AssetRoot assets;             // as of compile::FilesRequest
+  std::string library;
   std::string port = "0";       // 0: any free one
 };
 

@@ -63,7 +63,8 @@ Result<Options> read_options(int count, char** words) {
     }
   }
   if (out.files.empty()) return usage("no .probe file is named");
-  PROBE_ASSIGN(out.assets, find_asset_root(out.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(out.assets));
+  out.assets = root.folders().front();
   return out;
 }
 

@@ -142,6 +142,7 @@ void add_plan(py::module_& module) {
       .def_static("open", &open)
       .def_static("from_bytes", &from_bytes)
       .def_property_readonly("root", [](const Plan& p) { return vlaprobe_plan_root(p.get()); })
+      .def_property_readonly("assets", [](const Plan& p) { return vlaprobe_plan_assets(p.get()); })
       .def_property_readonly("warnings",
                              [](const Plan& p) { return vlaprobe_plan_warnings(p.get()); })
       .def_property_readonly("diagnostics",

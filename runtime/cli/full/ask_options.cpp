@@ -18,7 +18,7 @@ Result<ask::AskOptions> ask_options(const AskArguments& arguments) {
   options.give_up_after = arguments.give_up_after;
   options.accepts_any_certificate = arguments.insecure;
   options.if_changed = if_changed_of(arguments.if_changed);
-  options.assets = arguments.assets.root;
+  options.assets = root_of(arguments.assets);
   options.choice.suite = arguments.suite;
   options.choice.tasks = arguments.tasks;
   options.choice.questions = arguments.questions;
@@ -49,6 +49,7 @@ LoadedPlan load_asked(const AskArguments& arguments, ask::AskOptions& options) {
         "are asked all of theirs; a text, or a plan of `build --suite`, asks its own alone\n",
         arguments.suite);
   }
+  options.assets = loaded.assets;
   options.choice.whole_plan = loaded.only_used_suites && arguments.suite.empty();
   return loaded;
 }

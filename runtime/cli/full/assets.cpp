@@ -20,7 +20,7 @@ int import_verb(AssetsArguments& arguments) {
   if (arguments.fill) {
     auto own = find_asset_root();
     if (!own) return report(own.failure());
-    arguments.options.fill_from = *own;
+    arguments.options.fill_from = own->folders().front();
   }
   auto imported = assets::import_data(arguments.options);
   if (!imported) return report(imported.failure());
@@ -41,7 +41,7 @@ void add_pack(Verb assets, int& exit) {
   Verb pack = assets.add_subcommand("pack", "a mesh or a robot of yours as one asset");
   pack.footer(
       "reads glb, gltf, dae, obj, stl, urdf; z is up in the result; prints the box to write\n"
-      "example: vlaprobe assets pack mug/mug.obj -o my_assets/objects/mug --scale 0.001");
+      "example: vlaprobe assets pack mug/mug.obj -o assets/objects/mug --scale 0.001");
   pack.add_option("FILE", options->from, "mesh or URDF").required();
   pack.add_option("-o,--out", options->to, "folder to make").required();
   pack.add_option("--scale", options->scale, "metres a unit of the file (default: 1)");
@@ -60,6 +60,7 @@ void add_pack(Verb assets, int& exit) {
     put("{}: {}\n", options->to, packed->made);
     for (const std::string& doubt : packed->doubts) say("note: {}\n", doubt);
     if (!packed->text.empty()) put("{}", packed->text);
+    if (!packed->found.empty()) say("note: {}\n", packed->found);
     exit = kFine;
   });
 }

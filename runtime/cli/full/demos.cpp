@@ -39,6 +39,7 @@ int demos_verb(const DemosArguments& arguments) {
   if (!options) return report(options.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  options->assets = loaded.assets;
   ProgressPrinter printer;
   options->progress = [&](const run::RunProgress& progress) { printer(progress); };
   const auto summary = run::run(*loaded.plan, *options);
@@ -72,8 +73,7 @@ void add_demos(Verb app, int& exit) {
   verb.add_option("--if-changed", run.if_changed,
                   "refuse, fork (into DIR-2) or continue over another build")
       .one_of({"refuse", "fork", "continue"});
-  verb.add_option("--assets", run.assets.root, "");
-  verb.add_option("--std", run.assets.library, "");
+  add_asset_option(verb, run.assets, false);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = demos_verb(*arguments); });
 }

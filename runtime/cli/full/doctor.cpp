@@ -15,11 +15,11 @@ struct DoctorArguments {
 };
 
 // The shipped suites with the assets at hand.
-Result<plan::Plan> compile_suite(const std::string& asset_root) {
+Result<plan::Plan> compile_suite(const AssetRoot& asset_root) {
   const std::vector<std::string> files = doctor::golden_suites();
   if (files.empty()) return Failure{Fault::kUsage, "the suite's text is not here", ""};
   AssetOptions assets;
-  assets.root = asset_root;
+  assets.folders = asset_root.folders();
   CompiledText text = compile_quietly(files, assets, {}, true);
   if (text.plan.empty())
     return Failure{Fault::kAsset, "the suite does not compile with these assets", files.front()};
@@ -27,7 +27,7 @@ Result<plan::Plan> compile_suite(const std::string& asset_root) {
 }
 
 int examine(const DoctorArguments& arguments) {
-  const auto report = doctor::examine(arguments.assets.root, compile_suite);
+  const auto report = doctor::examine(root_of(arguments.assets), compile_suite);
   if (!report) return cli::report(report.failure());
   if (arguments.json) {
     put("{}\n", doctor::to_json(*report, version()));

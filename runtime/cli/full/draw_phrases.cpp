@@ -47,7 +47,7 @@ int draw_phrases(const LoadedPlan& loaded, const DrawArguments& arguments) {
   auto rows = phrase_rows(loaded, arguments.task);
   if (!rows) return report(rows.failure());
   const auto written =
-      show::write_phrases(*loaded.plan, *rows, arguments.out, arguments.assets.root);
+      show::write_phrases(*loaded.plan, *rows, arguments.out, loaded.assets);
   if (!written) return report(written.failure());
   put("{}\n", arguments.out);
   return kFine;

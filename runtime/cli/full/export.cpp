@@ -19,7 +19,7 @@ namespace probe::cli {
 namespace {
 
 struct ExportArguments {
-  std::vector<std::string> runs;
+  std::vector<std::string> runs, assets;
   std::string out, format, tasks = "*", size, only, check;
   std::optional<int> wordings, fps;
   bool no_redraw = false;
@@ -180,8 +180,11 @@ void add_export(Verb app, int& exit) {
                   "DIR: hold this dataset against its traces (RUN: where its runs are now)");
   verb.add_flag("--no-redraw", arguments->no_redraw,
                 "of --check: leaves out pictures that have to be drawn again to be compared");
-  verb.add_option("--assets", options.assets, "");
-  verb.callback([arguments, &exit] { exit = export_verb(*arguments); });
+  verb.add_option("--assets", arguments->assets, "").no_extra_values();
+  verb.callback([arguments, &exit] {
+    arguments->dataset.assets = AssetRoot::chosen(arguments->assets);
+    exit = export_verb(*arguments);
+  });
 }
 
 }  // namespace probe::cli

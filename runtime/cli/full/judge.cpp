@@ -207,7 +207,7 @@ int judge_under_several(const JudgeArguments& arguments, const plan::Plan& plan)
 // The plan that `--with` names, or the stored one with the metrics of a text that has no tasks.
 LoadedPlan judging_plan(const JudgeArguments& arguments) {
   auto text =
-      compile::metrics_text(arguments.with, arguments.assets.root, arguments.assets.library);
+      compile::metrics_text(arguments.with, root_of(arguments.assets), arguments.assets.library);
   if (!text) return load_plan(arguments.with, arguments.assets);
   LoadedPlan loaded;
   const auto stored = store::open_run_plan(arguments.dir);

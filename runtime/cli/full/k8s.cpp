@@ -27,8 +27,8 @@ Status write_manifests(KubernetesArguments& arguments, const run::RunOptions& op
                        const plan::Plan& plan) {
   cluster::KubernetesJob& job = arguments.job;
   if (!options.assets.empty()) {
-    return Failure{Fault::kUsage, "a folder of this machine; the image has its own assets",
-                   "--assets"};
+    return Failure{Fault::kUsage, "models of this machine, which the image has not: it has its own assets",
+                   options.assets.text().empty() ? options.assets.folders().front() : "--assets"};
   }
   // Every shard would refuse what one does.
   if (auto actor = run::choose_actor(options); !actor) return actor.failure();
@@ -49,10 +49,11 @@ Status write_manifests(KubernetesArguments& arguments, const run::RunOptions& op
 }
 
 int k8s_verb(KubernetesArguments& arguments) {
-  const auto options = to_options(arguments.run);
+  auto options = to_options(arguments.run);
   if (!options) return report(options.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  options->assets = loaded.assets;
   const Status written = write_manifests(arguments, *options, *loaded.plan);
   return written ? kFine : report(written.failure());
 }

@@ -12,7 +12,7 @@ namespace {
 int import_libero(libero::ImportOptions& options) {
   auto own = find_asset_root();
   if (!own) return report(own.failure());
-  options.own = *own;
+  options.own = own->folders().front();
   const auto imported = libero::import_libero(options);
   if (!imported) return report(imported.failure());
   for (const libero::ImportLine& line : imported->lines) put("{:<8} {}\n", line.word, line.text);

@@ -20,7 +20,7 @@ struct ReplayArguments {
 
 int replay_verb(const ReplayArguments& arguments) {
   run::ReplayOptions options = arguments.options;
-  options.assets = arguments.assets.root;
+  options.assets = root_of(arguments.assets);
   for (const std::string& out : {options.video, options.png}) {
     if (auto spared = assets::check_output(out); !spared) return report(spared.failure());
   }

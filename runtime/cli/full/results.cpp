@@ -171,7 +171,7 @@ int events_verb(ResultsArguments arguments) {
   auto rows = store::read_results(arguments.dir);
   if (!rows) return report(rows.failure());
   auto text =
-      compile::metrics_text(arguments.with, arguments.assets.root, arguments.assets.library);
+      compile::metrics_text(arguments.with, root_of(arguments.assets), arguments.assets.library);
   if (!text) {
     const LoadedPlan loaded = load_plan(arguments.with, arguments.assets);
     if (!loaded.plan) return loaded.exit;

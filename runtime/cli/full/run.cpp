@@ -30,6 +30,7 @@ int run_verb(const CallArguments& arguments) {
   if (auto actor = run::choose_actor(*options); !actor) return report(actor.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  options->assets = loaded.assets;
 
   if (options->accepts_any_certificate) warn_of_insecure(options->policy);
   std::unique_ptr<follow::FollowPage> page;

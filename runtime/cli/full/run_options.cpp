@@ -124,7 +124,7 @@ Result<run::RunOptions> to_options(const RunArguments& arguments) {
   options.out = arguments.out;
   options.suite = arguments.suite;
   options.tasks = arguments.tasks;
-  options.assets = arguments.assets.root;
+  options.assets = root_of(arguments.assets);
   options.jobs = arguments.jobs;
   if (!arguments.episodes.empty()) {
     PROBE_ASSIGN(options.episodes, parse_range(arguments.episodes));

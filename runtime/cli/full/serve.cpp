@@ -53,6 +53,7 @@ Result<std::string> folder_of(const ServeArguments& arguments, int* exit) {
     *exit = loaded.exit;
     return std::string();
   }
+  options.assets = loaded.assets;
   // What draws has other episodes for each seed, which no question names: one is served.
   PROBE_ASSIGN(const run::PolicyChoice choice, run::choose_policy(options.policy));
   if (choice.traits.draws) {
@@ -84,7 +85,7 @@ Result<servers::ServedActions> actions_asked(const ServeArguments& arguments, in
   for (const run::EpisodeJob& job : selection.jobs) {
     if (tasks.empty() || tasks.back() != job.task) tasks.push_back(job.task);
   }
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+  PROBE_ASSIGN(const AssetRoot root, find_asset_root(loaded.assets));
   return run::only_actions(*loaded.plan, tasks, root);
 }
 
@@ -174,7 +175,7 @@ void add_serve(Verb app, int& exit) {
   verb.add_option("--episodes", arguments->run.episodes, "as for `run`");
   verb.add_option("--seeds", arguments->run.seeds, "as for `run`; of a policy that draws, one");
   verb.add_option("--jobs", arguments->run.jobs, "as for `run`");
-  verb.add_option("--assets", arguments->run.assets.root, "asset root");
+  verb.add_option("--assets", arguments->run.assets.folders, "as for `run`").no_extra_values();
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = serve_verb(*arguments); });
 }

@@ -60,9 +60,7 @@ void add_shared_options(Verb verb, SharedArguments& arguments, SharedWords words
   number("--give-up-after", arguments.give_up_after).between(0, 1000000);
   verb.add_flag("--insecure", arguments.insecure, about("--insecure"));
   text("--if-changed", arguments.if_changed).one_of({"refuse", "fork", "continue"});
-  if (words == SharedWords::kRun) return add_asset_option(verb, arguments.assets);
-  verb.add_option("--assets", arguments.assets.root, "");
-  verb.add_option("--std", arguments.assets.library, "");
+  add_asset_option(verb, arguments.assets, words == SharedWords::kRun);
 }
 
 std::string unsaid_options(SharedWords words) {

@@ -55,7 +55,7 @@ void add_sheet(Verb app, int& exit) {
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
     if (!may_write(*arguments, exit)) return;
-    arguments->options.assets = arguments->assets.root;
+    arguments->options.assets = root_of(arguments->assets);
     exit = written(show::write_contact_sheet(arguments->input, arguments->out, arguments->options),
                    arguments->out);
   });
@@ -83,7 +83,7 @@ void add_preview(Verb app, int& exit) {
     if (!loaded.plan) return;
     const auto task = find_task(*loaded.plan, arguments->task, exit);
     if (!task) return;
-    arguments->options.assets = arguments->assets.root;
+    arguments->options.assets = loaded.assets;
     if (arguments->start) {
       exit = written(show::write_start(*loaded.plan, *task, *arguments->start, arguments->out,
                                        arguments->options.assets, arguments->options.camera),

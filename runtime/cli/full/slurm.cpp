@@ -69,6 +69,7 @@ int slurm_verb(const SlurmArguments& arguments) {
   if (!run_options) return report(run_options.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  run_options->assets = loaded.assets;
   cluster::SlurmOptions options;
   static_cast<cluster::ArrayOptions&>(options) = *array;
   options.run = std::move(*run_options);

@@ -37,7 +37,7 @@ void add_studio(Verb app, int& exit) {
   add_asset_option(verb, *assets);
   verb.refuse_empty_values();
   verb.callback([options, assets, &exit] {
-    options->assets = assets->root;
+    options->assets = root_of(*assets);
     options->library = assets->library;
     exit = studio_verb(*options);
   });

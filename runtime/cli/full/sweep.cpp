@@ -27,6 +27,7 @@ int sweep_verb(const SweepArguments& arguments) {
   if (auto able = run::check_sweep(sweeping); !able) return report(able.failure());
   const LoadedPlan loaded = load_runnable(arguments.run);
   if (!loaded.plan) return loaded.exit;
+  sweeping.run.assets = loaded.assets;
   if (sweeping.run.accepts_any_certificate) warn_of_insecure(sweeping.run.policy);
   sweeping.tell = [](const std::string& sentence) { say("{}\n", sentence); };
   const auto swept = run::sweep(*loaded.plan, sweeping);

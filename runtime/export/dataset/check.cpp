@@ -8,6 +8,7 @@
 #include "runtime/export/dataset/lerobot.h"
 #include "runtime/export/dataset/rlds.h"
 #include "runtime/export/dataset/robomimic.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::dataset {
 
@@ -15,7 +16,9 @@ Result<CheckReport> check_dataset(const std::string& dir, const CheckOptions& op
   PROBE_ASSIGN(NamedRuns named, NamedRuns::open(dir, options.runs));
   std::optional<PicturesAgain> again;
   if (options.redraws) {
-    PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
+    PROBE_ASSIGN(const AssetRoot root, options.runs.empty()
+                                           ? find_asset_root(options.assets)
+                                           : store::find_run_assets(options.runs.front(), options.assets));
     again.emplace(named.shape(), root);
   }
   PicturesAgain* const drawn = again ? &*again : nullptr;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::dataset {
@@ -19,7 +20,7 @@ struct CheckReport {
 struct CheckOptions {
   // Where the runs are now, in the order in which the dataset names them; empty: where it says.
   std::vector<std::string> runs = {};
-  std::string assets = {};  // as find_asset_root() takes it
+  AssetRoot assets = {};  // as find_asset_root() takes it
   // Pictures that are no copies of what the policy saw (resized, or in a video) are held against
   // the run's, which are drawn again and proved; false: they are only counted and measured.
   bool redraws = true;

@@ -9,7 +9,6 @@
 #include <set>
 #include <utility>
 
-#include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/export/dataset/finished_films.h"
 #include "runtime/export/dataset/in_order.h"
@@ -32,6 +31,7 @@
 #include "runtime/store/episode_key.h"
 #include "runtime/store/fingerprint.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::dataset {
 namespace {
@@ -210,8 +210,9 @@ Result<Made> make_guarded(Maker& maker, const store::ResultRow& row) {
 
 Status write_run(const Source& source, const Shape& shape, const Layout& layout,
                  const FinishedFilms& finished, const Wordings* wordings,
-                 const DatasetOptions& options, const std::string& root, Writing& writing) {
+                 const DatasetOptions& options, Writing& writing) {
   if (source.rows.empty()) return {};
+  PROBE_ASSIGN(const AssetRoot root, store::find_run_assets(source.dir, options.assets));
   PROBE_ASSIGN(const auto assets, stage::SharedAssets::load(source.plan, root, source.tasks));
   const std::size_t jobs = static_cast<std::size_t>(std::max(options.jobs, 1));
   InOrder<Made> order(jobs + kAhead, [&](Made made) { return writing.take(std::move(made)); });
@@ -296,8 +297,6 @@ Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const
     for (std::string& sentence : without_words(sources, *wordings))
       report.left_out.push_back(std::move(sentence));
   }
-  PROBE_ASSIGN(const std::string root, find_asset_root(options.assets));
-
   PROBE_ASSIGN(PartialFolder folder, PartialFolder::create(out, making(format, shape)));
   PROBE_ASSIGN(const auto layout, open_layout(format, folder.path(), shape, options));
   const FinishedFilms finished(folder.finished(), *layout);
@@ -305,7 +304,7 @@ Result<DatasetReport> export_dataset(const std::vector<std::string>& runs, const
   Writing writing(*layout, *provenance, options, total, report);
   for (const Source& source : sources) {
     PROBE_TRY(write_run(source, shape, *layout, finished, wordings ? &*wordings : nullptr, options,
-                        root, writing));
+                        writing));
   }
   PROBE_ASSIGN(const Contents contents, layout->finish());
   if (contents.episodes == 0)

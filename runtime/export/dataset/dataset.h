@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 
 namespace probe::dataset {
@@ -26,7 +27,7 @@ struct DatasetOptions {
   // number.
   int fps = 0;
   int jobs = 1;        // threads; the bytes do not depend on it
-  std::string assets;  // asset root, see find_asset_root
+  AssetRoot assets;  // empty: found by itself
   // Sizes at which a new file is begun, bytes.
   std::uint64_t most_data = 100'000'000, most_video = 200'000'000;
   // Called from worker threads, one call at a time: demonstrations done, and all there are.

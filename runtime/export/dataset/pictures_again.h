@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
 #include "runtime/export/dataset/named_runs.h"
@@ -17,8 +18,7 @@ namespace probe::dataset {
 
 class PicturesAgain {
  public:
-  // `assets`: the folder that plans' files are in.
-  PicturesAgain(const Shape& shape, std::string assets)
+  PicturesAgain(const Shape& shape, AssetRoot assets)
       : shape_(shape), assets_(std::move(assets)) {}
 
   // In the dataset's cameras and sizes, valid until it returns.
@@ -31,7 +31,7 @@ class PicturesAgain {
 
  private:
   Shape shape_;
-  std::string assets_;
+  AssetRoot assets_;
   // Of the last demonstration's task; the next one's is mostly the same.
   const plan::Plan* plan_ = nullptr;
   std::string task_;

@@ -44,6 +44,7 @@ static void of_plans(const vlaprobe_plan* plan, const char* file) {
   REFUSED("bytes", vlaprobe_plan_from_bytes(NULL, 9, NULL, &made, &error));
   REFUSED("plan", vlaprobe_plan_from_bytes(file, 1, NULL, NULL, &error));
   EMPTY(vlaprobe_plan_root(NULL));
+  EMPTY(vlaprobe_plan_assets(NULL));
   EMPTY(vlaprobe_plan_bytes(NULL, &found));
   EMPTY(vlaprobe_plan_warnings(NULL));
   EMPTY(vlaprobe_plan_diagnostics(NULL));

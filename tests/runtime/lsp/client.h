@@ -38,7 +38,7 @@ inline Json place_of(const std::string& text, const std::string& needle, std::si
 class Editor {
  public:
   explicit Editor(const std::string& folder, std::chrono::milliseconds pause = {},
-                  Json capabilities = Json::object(), const std::string& assets = "") {
+                  Json capabilities = Json::object(), const AssetRoot& assets = {}) {
     auto server = lsp::Server::start({.assets = assets, .library = "", .pause = pause},
                                      [this](std::string message) {
                                        const std::lock_guard lock(mutex_);

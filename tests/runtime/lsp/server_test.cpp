@@ -104,6 +104,30 @@ TEST_CASE("the whole check follows: what is out of reach") {
   CHECK(editor.codes(path).size() == whole.size());
 }
 
+TEST_CASE("models beside a text are found, and folders that are named as well") {
+  Folder folder;
+  const fs::path objects = fs::path(VLAPROBE_SOURCE_DIR) / "assets/objects";
+  fs::create_directories(folder.path() + "/near/objects");
+  fs::create_directories(folder.path() + "/named/objects");
+  fs::copy(objects / "plate", folder.path() + "/near/objects/my_plate");
+  fs::copy(objects / "plate", folder.path() + "/named/objects/other_plate");
+  const std::string text = "use \"" + kIntact +
+                           "\"\nobject mine like plate { mesh \"my_plate\"; name \"my plate\" }\n"
+                           "object other like plate { mesh \"other_plate\"; name \"other plate\" }\n"
+                           "task a like on_table { source carrot; target mine }\n"
+                           "task b like on_table { source carrot; target other }\n"
+                           "suite s { tasks { a, b }; seeds 1 }\n";
+  const std::string path = folder.write("near/my.probe", text);
+  Editor unnamed(folder.path(), std::chrono::milliseconds(1));
+  unnamed.open(path, text);
+  CHECK(unnamed.codes(path, true).find("P0202") == unnamed.codes(path, true).rfind("P0202"));
+  CHECK(unnamed.codes(path, true).find("P0202") != std::string::npos);  // the other plate
+  Editor named(folder.path(), std::chrono::milliseconds(1), Json::object(),
+               AssetRoot::chosen({folder.path() + "/named", VLAPROBE_SOURCE_DIR "/assets"}));
+  named.open(path, text);
+  CHECK(named.codes(path, true).find("P0202") == std::string::npos);
+}
+
 TEST_CASE("completion asks the grammar: kinds, words, units, clear phrases") {
   Editor editor(kSuite);
   const std::string text = text_of_file(kIntact);
@@ -337,6 +361,12 @@ TEST_CASE("signatures, hints and lenses") {
                      {"end", {{"line", 12}, {"character", 0}}}};
   CHECK(editor.ask("textDocument/inlayHint", params)[0]["label"].text() ==
         "\"put carrot on plate\", 24 starts");
+  // What reads as one turn and is two.
+  const std::string turned = "use \"intact.probe\"\nobject c like carrot { rest roll 90deg, yaw 90deg }\n";
+  editor.open(kSuite + "/turned.probe", turned);
+  params = Editor::document(kSuite + "/turned.probe");
+  params["range"] = {{"start", {{"line", 0}, {"character", 0}}}, {"end", {{"line", 2}, {"character", 0}}}};
+  CHECK(editor.ask("textDocument/inlayHint", params)[0]["label"].text() == "2 turns, one a start");
   const Json lenses = editor.ask("textDocument/codeLens", Editor::document(kIntact));
   CHECK(lenses[0]["command"]["title"].text() == "24 starts");
   CHECK(lenses[2]["command"]["command"].text() == "vlaprobe.runExpert");

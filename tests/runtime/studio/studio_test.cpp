@@ -192,6 +192,24 @@ TEST_CASE("a text becomes a picture, small and then whole, its tasks and its sta
   CHECK(hear(*live, "top").json["svg"].text().find("data-object=\"carrot\"") != std::string::npos);
 }
 
+TEST_CASE("a model beside the text is drawn, seen from above and played with") {
+  const Page page;
+  fs::create_directories(page.root / "assets/objects");
+  fs::copy(VLAPROBE_SOURCE_DIR "/assets/objects/plate", page.root / "assets/objects/my_plate");
+  auto live = page.talk("live").value();
+  say(*live, {{"do", "hello"}});
+  const std::string text = kText +
+                           "object mine like plate { mesh \"my_plate\"; name \"my plate\" }\n"
+                           "task near like own { target mine; horizon 8 steps }\n";
+  Json texts = Json::object();
+  texts[page.path("my.probe")] = text;
+  say(*live, {{"do", "show"}, {"id", 7}, {"texts", texts}, {"task", "near"}, {"start", 0}});
+  CHECK(hear(*live, "picture").json["task"] == "near");
+  CHECK(hear(*live, "top").json["svg"].text().find("data-object=\"mine\"") != std::string::npos);
+  say(*live, {{"do", "play"}, {"task", "near"}, {"start", 0}, {"policy", "null"}, {"seed", 0}});
+  CHECK(hear(*live, "played").json["steps"] == Json(8));
+}
+
 TEST_CASE("what is typed and not saved is what is shown; a mistake says where it is") {
   const Page page;
   auto live = page.talk("live").value();

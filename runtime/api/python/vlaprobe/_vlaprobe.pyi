@@ -32,6 +32,7 @@ FIELD_DECIDED: int
 
 class Plan:
     root: str
+    assets: str
     warnings: str
     diagnostics: str
     task_count: int

@@ -17,6 +17,8 @@ from ._picture import Picture, image_tag
 from .errors import Error, UsageError
 
 Path = Union[str, "os.PathLike[str]"]
+# Where meshes and robots lie: a folder, or several; the first that has a thing gives it.
+Folders = Union[Path, Sequence[Path]]
 
 
 def _pattern(glob: str) -> "re.Pattern[str]":
@@ -26,6 +28,12 @@ def _pattern(glob: str) -> "re.Pattern[str]":
 
 def _absent(path: Optional[Path]) -> Optional[str]:
     return None if path is None else os.fspath(path)
+
+
+def _lines(folders: Optional[Folders]) -> Optional[str]:
+    if folders is None or isinstance(folders, (str, os.PathLike)):
+        return _absent(folders)
+    return "\n".join(os.fspath(folder) for folder in folders)
 
 
 @dataclass(frozen=True)
@@ -289,12 +297,13 @@ class Plan:
         suites: Suite by name.
         warnings: the compiler's, rendered; "" where there are none.
         diagnostics: the same as dicts, see CompileError.
-        assets: the asset folder that was named, None where it is found by itself.
+        assets: the folders that its files are taken from: those that were named and those beside its
+            texts, as a tuple; None where all are found by themselves.
     """
 
-    def __init__(self, handle: "_vlaprobe.Plan", assets: Optional[str] = None) -> None:
+    def __init__(self, handle: "_vlaprobe.Plan") -> None:
         self._handle = handle
-        self.assets = assets
+        self.assets: Optional[tuple[str, ...]] = tuple(handle.assets.split("\n")) if handle.assets else None
         self.root: str = handle.root
         self.tasks = Tasks(self)
         names = list(self.tasks)
@@ -394,7 +403,7 @@ def compile(  # noqa: A001 - the design's name
     *files: Path,
     suite: Optional[str] = None,
     tasks: Optional[str] = None,
-    assets: Optional[Path] = None,
+    assets: Optional[Folders] = None,
     std: Optional[Path] = None,
 ) -> Plan:
     """Compiles .probe files into a plan, as ``vlaprobe build`` does: same text and assets, same plan.
@@ -403,7 +412,8 @@ def compile(  # noqa: A001 - the design's name
         files: one or more paths.
         suite: the one suite to compile; None: all.
         tasks: a glob; only these tasks are compiled. For assets that do not serve every task.
-        assets: folder of meshes and robots; None: $VLAPROBE_ASSETS, else beside the library.
+        assets: folder of meshes and robots, or several, the first that has a thing giving it; None: beside
+            the texts, then $VLAPROBE_ASSETS, else beside the library.
         std: folder that holds ``std/``; None: $VLAPROBE_STD, else beside the library.
 
     Raises:
@@ -412,25 +422,23 @@ def compile(  # noqa: A001 - the design's name
     """
     if not files:
         raise UsageError("compile() wants the path of a .probe file")
-    folder = _absent(assets)
+    folders = _lines(assets)
     paths = [os.fspath(file) for file in files]
     only = (text_or_none(suite, "`suite`"), text_or_none(tasks, "`tasks`"))
-    return Plan(_vlaprobe.Plan.compile(paths, folder, _absent(std), *only), folder)
+    return Plan(_vlaprobe.Plan.compile(paths, folders, _absent(std), *only))
 
 
-def load(path: Path, assets: Optional[Path] = None) -> Plan:
+def load(path: Path, assets: Optional[Folders] = None) -> Plan:
     """Opens a .plan file, verifying it whole. A path that ends in .probe is compiled instead."""
     name = os.fspath(path)
     if name.endswith(".probe"):
         return compile(name, assets=assets)
-    folder = _absent(assets)
-    return Plan(_vlaprobe.Plan.open(name, folder), folder)
+    return Plan(_vlaprobe.Plan.open(name, _lines(assets)))
 
 
-def from_bytes(data: bytes, assets: Optional[Path] = None) -> Plan:
+def from_bytes(data: bytes, assets: Optional[Folders] = None) -> Plan:
     """A plan from the bytes of a .plan file."""
-    folder = _absent(assets)
-    return Plan(_vlaprobe.Plan.from_bytes(bytes(data), folder), folder)
+    return Plan(_vlaprobe.Plan.from_bytes(bytes(data), _lines(assets)))
 
 
 PlanLike = Union[Plan, Path]

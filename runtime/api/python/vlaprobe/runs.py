@@ -154,7 +154,7 @@ class Run:
         notes: sentences that a reader of the results should know.
     """
 
-    def __init__(self, folder: Path, told: Optional[dict] = None, assets: Optional[str] = None) -> None:
+    def __init__(self, folder: Path, told: Optional[dict] = None) -> None:
         told = told or {}
         self.folder = os.fspath(folder)
         self.total: Optional[int] = told.get("total")
@@ -165,7 +165,6 @@ class Run:
         self.not_attempted_reasons: list[dict[str, Any]] = told.get("not_attempted_reasons", [])
         self.notes: list[str] = told.get("notes", [])
         self.speed: str = told.get("speed", "")
-        self._assets = assets
 
     def results(self) -> Results:
         """The rows that their traces bear; reads every trace."""
@@ -211,7 +210,7 @@ class Run:
         as_text = [None if path is None else os.fspath(path) for path in (video, png)]
         which = (name_of(task), whole(episode, "`episode`"), _seed_of(seed))
         shown = (whole(step, "`step`"), text_or_none(camera, "`camera`"), flag(verify, "`verify`"))
-        return json.loads(_vlaprobe.replay(self.folder, *which, self._assets, *as_text, *shown))
+        return json.loads(_vlaprobe.replay(self.folder, *which, None, *as_text, *shown))
 
     def report(self, out: Path, **options: Any) -> dict[str, Any]:
         """One page of this run: report([self], out, ...)."""
@@ -421,4 +420,4 @@ def evaluate(
     }
     tell = teller(progress, "episodes", "success")
     told = json.loads(_vlaprobe.run(compiled._handle, options, answer, tell))
-    return Run(told["out"], told, compiled.assets)
+    return Run(told["out"], told)

@@ -1,6 +1,7 @@
 """Plans from Python: compile, tasks, episodes, mistakes."""
 
 import pickle
+import shutil
 import unittest
 
 import vlaprobe
@@ -55,6 +56,35 @@ class PlanTest(Case):
         self.assertEqual(every[-1].index, list(plan.tasks.values())[-1].episodes - 1)
         with self.assertRaises(IndexError):
             every[len(every)]
+
+    def test_models_lie_beside_their_text_or_in_several_folders(self):
+        folder = self.folder()
+        for place in (folder + "/near/objects/my_plate", folder + "/far/objects/my_plate"):
+            shutil.copytree(SOURCE + "/assets/objects/plate", place)
+        with open(folder + "/near/mine.probe", "w") as file:
+            file.write(
+                'use "suite/intact.probe"\nobject my_plate like plate { mesh "my_plate"; name "my plate" }\n'
+                "task mine like on_table { source carrot; target my_plate }\nsuite own { tasks { mine }; seeds 1 }\n"
+            )
+        shutil.copy(folder + "/near/mine.probe", folder + "/mine.probe")
+        near = vlaprobe.compile(folder + "/near/mine.probe")
+        self.assertEqual(near.assets[0], folder + "/near")
+        with vlaprobe.make(near, "mine", pictures=False) as env:
+            env.reset()
+        self.assertEqual(pickle.loads(pickle.dumps(near)).assets, near.assets)
+        self.assertIsNone(suite_plan().assets)
+        with self.assertRaises(vlaprobe.CompileError) as raised:
+            vlaprobe.compile(folder + "/mine.probe", assets=SOURCE + "/assets")
+        self.assertSays(raised.exception, "P0202", "objects/my_plate")
+        several = vlaprobe.compile(folder + "/mine.probe", assets=[folder + "/far", SOURCE + "/assets"])
+        self.assertEqual(several, near)
+        self.assertEqual(several.assets, (folder + "/far", SOURCE + "/assets"))
+        self.assertEqual(vlaprobe.from_bytes(near.to_bytes(), assets=several.assets).assets, several.assets)
+        near.forget()
+        shutil.rmtree(folder + "/near")
+        with self.assertRaises(vlaprobe.Error) as raised:
+            vlaprobe.make(near, "mine")
+        self.assertSays(raised.exception, folder + "/near")
 
     def test_a_text_with_mistakes_carries_its_diagnostics(self):
         with self.assertRaises(vlaprobe.CompileError) as raised:

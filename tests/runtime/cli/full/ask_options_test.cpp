@@ -16,7 +16,7 @@ std::set<std::string> asked_by(const std::string& file, const std::string& suite
   arguments.file = file;
   arguments.suite = suite;
   arguments.tasks = "*";
-  arguments.assets.root = std::string(VLAPROBE_SOURCE_DIR) + "/assets";
+  arguments.assets.folders = {std::string(VLAPROBE_SOURCE_DIR) + "/assets"};
   arguments.assets.library = std::string(VLAPROBE_SOURCE_DIR) + "/dsl";
   ask::AskOptions options;
   const LoadedPlan loaded = load_asked(arguments, options);
