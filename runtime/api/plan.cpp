@@ -158,7 +158,7 @@ int32_t vlaprobe_plan_from_bytes(const void* bytes, size_t size,
     PROBE_ASSIGN(const vlaprobe_plan_options given, api::read_options(options));
     const auto* first = static_cast<const std::byte*>(bytes);
     PROBE_ASSIGN(plan::Plan read, plan::Plan::from_bytes({first, first + size}));
-    *plan = api::handle_of(std::move(read), given);
+    *plan = api::handle_of(std::move(read), api::folders_of(given.assets));
     return {};
   });
 }

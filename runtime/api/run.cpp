@@ -250,7 +250,7 @@ int32_t vlaprobe_replay(const char* folder, const char* task, int32_t episode, i
     wanted.png = text_of(given.png);
     wanted.png_step = given.png_step;
     wanted.camera = text_of(given.camera);
-    wanted.assets = folders_of(given.assets);
+    wanted.assets = api::folders_of(given.assets);
     for (const std::string& out : {wanted.video, wanted.png}) PROBE_TRY(assets::check_output(out));
     const std::optional<int> asked = seed < 0 ? std::nullopt : std::optional<int>(seed);
     PROBE_ASSIGN(const run::ReplayReport report, run::replay(folder, task, episode, asked, wanted));
