@@ -69,7 +69,7 @@ class PlanTest(Case):
         shutil.copy(folder + "/near/mine.probe", folder + "/mine.probe")
         near = vlaprobe.compile(folder + "/near/mine.probe")
         self.assertEqual(near.assets[0], folder + "/near")
-        with vlaprobe.make(near, "mine", pictures=False) as env:
+        with vlaprobe.make(near, "mine", cameras=False) as env:
             env.reset()
         self.assertEqual(pickle.loads(pickle.dumps(near)).assets, near.assets)
         self.assertIsNone(suite_plan().assets)
@@ -80,10 +80,10 @@ class PlanTest(Case):
         self.assertEqual(several, near)
         self.assertEqual(several.assets, (folder + "/far", SOURCE + "/assets"))
         self.assertEqual(vlaprobe.from_bytes(near.to_bytes(), assets=several.assets).assets, several.assets)
-        near.forget()
+        again = pickle.dumps(near)
         shutil.rmtree(folder + "/near")
         with self.assertRaises(vlaprobe.Error) as raised:
-            vlaprobe.make(near, "mine")
+            vlaprobe.make(pickle.loads(again), "mine")
         self.assertSays(raised.exception, folder + "/near")
 
     def test_a_text_with_mistakes_carries_its_diagnostics(self):
