@@ -7,6 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "compiler/check/relation_words.h"
+#include "runtime/base/utf8.h"
+#include "runtime/base/words.h"
+
 namespace probe::sema {
 namespace {
 
@@ -291,7 +295,7 @@ class ClauseGoal {
         continue;
       const bool is_of_both = (asked.of[0] == Things{thing} && asked.of[1] == Things{place}) ||
                               (asked.of[0] == Things{place} && asked.of[1] == Things{thing});
-      if (is_of_both && !relation.words.empty())
+      if (is_of_both && !relation.words.empty() && !says(fold_case(clause.words), relation))
         return "success asks `" + relation.name + "`, which is said by \"" + relation.words.front() +
                "\"";
     }
@@ -327,6 +331,8 @@ class ClauseGoal {
       return std::nullopt;
     const auto one = bearing(moved[0], *clause.from.begin());
     if (!one || !one->near || !one->asked || one->apart) return std::nullopt;
+    // By another number than just "higher" it may be above it and off it.
+    if (one->other && !goal_.above.contains({moved[0], *clause.from.begin()})) return std::nullopt;
     return "success wants " + name(moved[0]) + " to be there";
   }
 
@@ -369,7 +375,9 @@ class ClauseGoal {
   // "put the cube on the tray, then pick it up again" of which success is that it lies there at the
   // end.
   std::optional<std::string> taken_lack(const Clause& clause) const {
-    if (clause.does != Does::kTakes || clause.what.size() != 1 || !goal_.forgets)
+    // "Put it on the tray, lifting it carefully" takes it before.
+    if (clause.does != Does::kTakes || clause.what.size() != 1 || !goal_.forgets ||
+        !has_words(fold_case(clause.words), "again"))
       return std::nullopt;
     for (const Clause* put = clauses_.all.data(); put != &clause; ++put) {
       if (!put->certain || put->does != Does::kPuts || !put->goes || put->where.size() != 1 ||

@@ -134,6 +134,8 @@ class ClauseReader {
         at_ += word.length;
         clause(match(at_));
         out_.all.back().denied = true;
+        // "Do not put it there before ..": later it may.
+        if (at_ < words_.size() && words_[at_].text == "before") doubt(out_.all.back(), at_);
         stop();
         break;
       }

@@ -195,7 +195,9 @@ class Shared {
   // same parts; by the same objects where expressions name some.
   using ClauseKey = std::tuple<TemplateId, std::vector<ExprRef>, Filled>;
   ClauseKey clause_key(const Task& task) const {
-    Filled filled;
+    // With its scene and its layout, which say what stands there and on what it lies.
+    Filled filled = {static_cast<std::uint32_t>(task.scene),
+                     static_cast<std::uint32_t>(task.layout)};
     for (std::size_t i = 0; i < model_.roles.size(); ++i) {
       const auto objects = task.objects_in(model_.roles.id(i));
       filled.push_back(static_cast<std::uint32_t>(objects.size()));
@@ -211,9 +213,11 @@ class Shared {
 
  private:
   using Judged = std::tuple<bool, ExprRef, plan::Readout>;
-  using HeardKey = std::tuple<TemplateId, SceneId, Filled, std::vector<ObjectId>>;
+  using HeardKey = std::tuple<TemplateId, Filled, std::vector<ObjectId>>;
 
+  // The scene with them: `parts` are those of its fixtures.
   void fill(Filled& by_role, const Task& task) const {
+    by_role.push_back(static_cast<std::uint32_t>(task.scene));
     for (std::size_t i = 0; i < model_.roles.size(); ++i) {
       const auto objects = task.objects_in(model_.roles.id(i));
       by_role.push_back(static_cast<std::uint32_t>(objects.size()));
@@ -223,7 +227,7 @@ class Shared {
   HeardKey heard_key(const Task& task) const {
     Filled by_role;
     fill(by_role, task);
-    return {task.say, task.scene, std::move(by_role), task.objects()};
+    return {task.say, std::move(by_role), task.objects()};
   }
 
   const Model& model_;
@@ -518,12 +522,14 @@ class Told {
   // "do not put B there until A is on it".
   bool is_denied_until() {
     const auto at = said().find("until");
+    return at && is_denied_before(*at);
+  }
+  bool is_denied_before(std::size_t at) {
     const auto& words = said().words;
-    return at && std::any_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(*at),
-                             [](const Said::Word& word) {
-                               return word.text == "not" || word.text == "don't" ||
-                                      word.text == "never";
-                             });
+    return std::any_of(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(at),
+                       [](const Said::Word& word) {
+                         return word.text == "not" || word.text == "don't" || word.text == "never";
+                       });
   }
 
   bool is_asked(const Things& things) {
@@ -605,6 +611,8 @@ class Told {
       if (!is_between) at = said().find(one.words);
       if (!at || (!is_between && *at > std::min(*a, *b))) continue;
       if (*at > 0 && said().words[*at - 1].text == "not") continue;
+      // "Do not put B there before A is": that is A first.
+      if (leads && is_denied_before(*at)) continue;
       // "After that" and "before it" speak of what was said before.
       const bool looks_back = speaks_back(*at + 1);
       const bool is_forward =

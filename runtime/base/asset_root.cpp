@@ -177,6 +177,8 @@ Result<AssetRoot> find_asset_root(const AssetRoot& chosen) {
   }
   if (const char* named = std::getenv("VLAPROBE_ASSETS"); named != nullptr && *named != '\0') {
     const std::vector<std::string> folders = split(named);
+    if (folders.empty())
+      return Failure{Fault::kAsset, "VLAPROBE_ASSETS names no folder", named};
     for (const std::string& folder : folders) {
       if (!is_directory(folder))
         return Failure{Fault::kAsset, "the asset folder given by VLAPROBE_ASSETS is not there",

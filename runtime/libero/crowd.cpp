@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include <Eigen/Geometry>
+
 #include "runtime/libero/goal.h"
 #include "runtime/libero/scene_kinds.h"
 #include "runtime/libero/start_rows.h"
@@ -21,10 +23,28 @@ constexpr double kApart = 0.015;   // m
 constexpr double kReach = 0.17;    // m, how far a drawer comes out
 constexpr double kLetDown = 0.001; // m above the surface
 
-// Around the origin of the model, which is what tables place.
-double radius_of(const Thing& thing) {
-  return std::hypot(std::max(-thing.low.x(), thing.high.x()),
-                    std::max(-thing.low.y(), thing.high.y()));
+// As it stands: how wide about its origin, which tables place, and how far below that its foot is.
+struct Extent {
+  double radius = 0, foot = 0;
+};
+Extent extent_of(const Thing& thing, const std::array<std::string, 4>& turn) {
+  const Eigen::Quaterniond q(std::stod(turn[0]), std::stod(turn[1]), std::stod(turn[2]),
+                             std::stod(turn[3]));
+  Extent extent;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 at((corner & 1) != 0 ? thing.high.x() : thing.low.x(),
+                  (corner & 2) != 0 ? thing.high.y() : thing.low.y(),
+                  (corner & 4) != 0 ? thing.high.z() : thing.low.z());
+    const Vec3 turned = q.normalized() * at;
+    extent.radius = std::max(extent.radius, std::hypot(turned.x(), turned.y()));
+    extent.foot = std::min(extent.foot, turned.z());
+  }
+  return extent;
+}
+double radius_of(const Thing& thing) { return extent_of(thing, {"1", "0", "0", "0"}).radius; }
+
+std::array<std::string, 4> turn_of(const std::vector<std::string>& cells) {
+  return {cells[kTurnCell], cells[kTurnCell + 1], cells[kTurnCell + 2], cells[kTurnCell + 3]};
 }
 
 std::string last_word(std::string_view words) {
@@ -40,18 +60,19 @@ class Crowd {
   Crowd(const BddlProblem& problem, const Things& things, const SceneKind& kind)
       : problem_(problem), things_(things), kind_(kind), roles_(roles_of(problem)) {}
 
-  std::vector<Foreign> place(std::string_view table, const std::vector<std::string>& declared,
+  std::vector<Foreign> place(std::string_view table, const std::vector<Standing>& declared,
                              std::size_t turn) {
     std::vector<Foreign> put;
     if (!read(table)) return put;
     for (std::size_t i = 0; i < declared.size() && put.size() < kMost; ++i) {
-      const std::string& object = declared[(turn + i) % declared.size()];
-      const Thing* const thing = foreign(object);
+      const Standing& what = declared[(turn + i) % declared.size()];
+      const Thing* const thing = foreign(what.object);
       if (thing == nullptr) continue;
-      const auto at = free_place(radius_of(*thing));
+      const Extent extent = extent_of(*thing, what.turn);
+      const auto at = extent.radius > kWidest ? std::nullopt : free_place(extent.radius);
       if (!at) continue;
-      put.push_back({object, at->x, at->y, kind_.surface - thing->low.z() + kLetDown});
-      taken_.push_back({at->x, at->y, radius_of(*thing)});
+      put.push_back({what, at->x, at->y, kind_.surface - extent.foot + kLetDown});
+      taken_.push_back(*at);
       nouns_.insert(last_word(name_of(thing->category)));
     }
     return put;
@@ -86,7 +107,7 @@ class Crowd {
       is_known = is_known && thing != nullptr;
       if (thing == nullptr) return std::string();
       const double x = std::stod(cells[kXCell]), y = std::stod(cells[kYCell]);
-      taken_.push_back({x, y, radius_of(*thing)});
+      taken_.push_back({x, y, extent_of(*thing, turn_of(cells)).radius});
       low_x_ = std::min(low_x_, x), high_x_ = std::max(high_x_, x);
       low_y_ = std::min(low_y_, y), high_y_ = std::max(high_y_, y);
       nouns_.insert(last_word(name_of(object->category)));
@@ -119,11 +140,11 @@ class Crowd {
     return std::nullopt;
   }
 
-  // Nothing of the task is called so, and it is no wider than may be.
+  // Nothing of the task is called so.
   const Thing* foreign(const std::string& object) const {
     const std::string category = object.substr(0, object.rfind('_'));
     const Thing* const thing = thing_of(category);
-    if (thing == nullptr || thing->is_fixture || radius_of(*thing) > kWidest) return nullptr;
+    if (thing == nullptr || thing->is_fixture) return nullptr;
     const std::string_view name = name_of(category);
     return name.empty() || nouns_.contains(last_word(name)) ? nullptr : thing;
   }
@@ -157,8 +178,18 @@ class Crowd {
 
 }  // namespace
 
+std::optional<Standing> standing_in(std::string_view table, const std::string& object) {
+  std::optional<Standing> found;
+  each_row(table, [&](std::string_view row) {
+    const std::vector<std::string> cells = cells_of(row);
+    if (!found && cells[kWhatCell] == object) found = Standing{object, turn_of(cells)};
+    return std::string();
+  });
+  return found;
+}
+
 std::vector<Foreign> crowd(const BddlProblem& problem, const Things& things, std::string_view table,
-                           const std::vector<std::string>& declared, std::size_t turn) {
+                           const std::vector<Standing>& declared, std::size_t turn) {
   const SceneKind* const kind = scene_kind(problem);
   return kind == nullptr ? std::vector<Foreign>()
                          : Crowd(problem, things, *kind).place(table, declared, turn);

@@ -77,7 +77,7 @@ class TaskAsker {
   }
 
   // What else can stand there of what is declared, for a task that puts one thing.
-  std::vector<Foreign> foreign(const std::vector<std::string>& declared, std::size_t turn) const {
+  std::vector<Foreign> foreign(const std::vector<Standing>& declared, std::size_t turn) const {
     const std::string_view what = kind();
     if (what != "lays" && what != "fills") return {};
     return crowd(problem_, things_, task_.written.table, declared, turn);
@@ -113,7 +113,7 @@ class TaskAsker {
       if (const auto other = swapped_with()) add_table("swapped", with_places_of(*other), "");
       if (!foreign.empty()) {
         std::vector<std::string> others = roles_.distractors;
-        for (const Foreign& one : foreign) others.push_back(one.object);
+        for (const Foreign& one : foreign) others.push_back(one.what.object);
         add_table("crowded", with_foreign(foreign),
                   fmt::format("; distractors {}", fmt::join(others, ", ")));
       }
@@ -180,8 +180,8 @@ class TaskAsker {
     const auto end_start = [&] {
       if (start.empty()) return;
       for (const Foreign& one : foreign)
-        out += fmt::format("{},{},{:.4f},{:.4f},{:.4f},1,0,0,0,\n", start, one.object, one.x, one.y,
-                           one.z);
+        out += fmt::format("{},{},{:.4f},{:.4f},{:.4f},{},\n", start, one.what.object, one.x,
+                           one.y, one.z, fmt::join(one.what.turn, ","));
     };
     bool is_head = true;
     each_row(task_.written.table, [&](std::string_view row) {
@@ -269,13 +269,16 @@ SuiteText write_probing(const std::vector<std::string>& suites, const std::vecto
   sets["twins"];
   std::string body, stages;
   std::set<std::string_view> shown;
-  std::set<std::string> declared;
+  std::map<std::string, Standing> declared;  // those that distract somewhere, as they stand there
   for (const AskedTask& task : tasks) {
     for (const BddlThing& object : task.problem.objects) {
-      if (object.name == object.category + "_1") declared.insert(object.name);
+      if (object.name != object.category + "_1" || declared.contains(object.name)) continue;
+      if (auto standing = standing_in(task.written.table, object.name))
+        declared.emplace(object.name, std::move(*standing));
     }
   }
-  const std::vector<std::string> objects(declared.begin(), declared.end());
+  std::vector<Standing> objects;
+  for (const auto& [name, standing] : declared) objects.push_back(standing);
   std::size_t turn = 0;
   sets["crowded"];
   for (const AskedTask& task : tasks) {

@@ -8,7 +8,8 @@
 namespace probe::libero {
 
 // The cells of a row and their columns.
-constexpr std::size_t kStartCell = 0, kWhatCell = 1, kXCell = 2, kYCell = 3;
+constexpr std::size_t kStartCell = 0, kWhatCell = 1, kXCell = 2, kYCell = 3,
+                      kTurnCell = 5;  // w x y z
 
 inline std::vector<std::string> cells_of(std::string_view row) {
   std::vector<std::string> cells;

@@ -26,8 +26,18 @@ Result<plan::Plan> open_run_plan(const std::string& dir) {
 Result<AssetRoot> find_run_assets(const std::string& dir, const AssetRoot& chosen) {
   if (!chosen.empty()) return find_asset_root(chosen);
   PROBE_ASSIGN(const RunRecord record, read_run_record(dir));
-  const AssetRoot recorded = AssetRoot::chosen(record.asset_folders);
-  return find_asset_root(recorded.check() ? recorded : AssetRoot());
+  // A folder that is gone, as the program's own after an upgrade, takes no other with it.
+  std::vector<std::string> folders;
+  for (const std::string& folder : record.asset_folders) {
+    if (AssetRoot::chosen({folder}).check()) folders.push_back(folder);
+  }
+  if (folders.empty()) return find_asset_root();
+  if (folders.size() == record.asset_folders.size()) return AssetRoot::chosen(folders);
+  const auto own = find_asset_root();
+  if (own) {
+    for (const std::string& folder : own->folders()) folders.push_back(folder);
+  }
+  return AssetRoot::chosen(folders);
 }
 
 }  // namespace probe::store

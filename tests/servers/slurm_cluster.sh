@@ -2,7 +2,7 @@
 # slurm_cluster.sh DIR [NODES [CPUS]]: a Slurm of one machine for tests: munged, slurmctld and a slurmd for each of NODES (1)
 # with CPUS (4), all state in DIR, then the line "ready". Ends all of it, jobs included, when its standard input is closed. Needs
 # root, but neither systemd nor cgroups. Prints "cannot: why" where it cannot start. Several nodes are called node1, node2, ..;
-# DIR/slurmd-node1.pid is the process of one, which may be killed; it is down ten seconds later. Jobs of the partition `urgent`
+# DIR/slurmd-node1.pid is the process of one, which may be killed; it is down SLURMD_TIMEOUT (300) seconds later. Jobs of the partition `urgent`
 # preempt those of `all`, which are queued again.
 set -u
 PATH=$PATH:/usr/sbin:/sbin
@@ -46,7 +46,7 @@ ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 JobAcctGatherType=jobacct_gather/none
 AccountingStorageType=accounting_storage/none
-SlurmdTimeout=10
+SlurmdTimeout=${SLURMD_TIMEOUT:-300}
 PreemptType=preempt/partition_prio
 PreemptMode=REQUEUE
 SelectType=select/cons_tres

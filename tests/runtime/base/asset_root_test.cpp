@@ -92,6 +92,8 @@ TEST_CASE("several folders of the environment stand as in PATH, and a name may h
   root = find_asset_root();
   REQUIRE_FALSE(root.ok());
   CHECK(root.failure().where == folder / "none");
+  setenv("VLAPROBE_ASSETS", ":", 1);
+  CHECK_FALSE(find_asset_root().ok());
   if (before == nullptr) unsetenv("VLAPROBE_ASSETS");
   else setenv("VLAPROBE_ASSETS", kept.c_str(), 1);
   // A named folder is one, whatever its name has.

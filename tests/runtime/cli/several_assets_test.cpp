@@ -82,6 +82,21 @@ TEST_CASE("every verb takes several folders of assets, and the plan is that of o
   CHECK_MESSAGE(contains(absent.err, "mine: the asset folder given by --assets is not there"), absent.err);
 }
 
+TEST_CASE("a folder that a run has recorded and that is gone takes no other with it") {
+  Sandbox box;
+  const std::string plan = plan_of_one(box);
+  pack(box, "near");
+  write_file(box / "near/mine.probe", kText);
+  REQUIRE(box.run("ln -s " VLAPROBE_SOURCE_DIR "/assets own").exit == 0);
+  const std::string program = "'" VLAPROBE_BINARY_DIR "/vlaprobe' ";
+  REQUIRE(box.run("{ export VLAPROBE_ASSETS=own; " + program +
+                  "run near/mine.probe --policy null --episodes 0-0 -o ran; }")
+              .exit == 0);
+  fs::remove(box / "own");
+  const Outcome again = box.vlaprobe("replay ran mine 0 --verify");
+  CHECK_MESSAGE(again.exit == 0, again.err);
+}
+
 TEST_CASE("models beside their text are found without a flag, in its folder or in `assets` there") {
   Sandbox box;
   const std::string plan = plan_of_one(box);

@@ -262,8 +262,9 @@ TEST_CASE("tasks that a more urgent job preempts go on behind it") {
 }
 
 TEST_CASE("a node that dies with all that runs on it: its tasks go on elsewhere, the rows are a single run's") {
-  const auto done = run_program({"bash", VLAPROBE_SOURCE_DIR "/tests/slurm_many.sh", "6", "96", "3",
-                                 "1", VLAPROBE_BINARY_DIR "/vlaprobe"});
+  const auto done = run_program({"env", "SLURM_MANY_LIMIT=600", "bash",
+                                 VLAPROBE_SOURCE_DIR "/tests/slurm_many.sh", "6", "192", "3", "1",
+                                 VLAPROBE_BINARY_DIR "/vlaprobe"});
   REQUIRE(done.ok());
   MESSAGE(done->out);
   CHECK_MESSAGE(done->status == 0, done->err);

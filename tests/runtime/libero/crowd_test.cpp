@@ -13,6 +13,7 @@ namespace {
 struct Table {
   BddlProblem problem;
   Things things;
+  std::array<std::string, 4> turns = {"1", "0", "0", "0"};
 
   Table() {
     problem.problem_class = "libero_tabletop_manipulation";
@@ -32,8 +33,10 @@ struct Table {
     know(category, half);
     problem.objects.push_back({category + "_1", category, {}});
   }
-  std::vector<Foreign> crowd(const std::string& rows, const std::vector<std::string>& declared,
+  std::vector<Foreign> crowd(const std::string& rows, const std::vector<std::string>& names,
                              std::size_t turn = 0) const {
+    std::vector<Standing> declared;
+    for (const std::string& name : names) declared.push_back({name, turns});
     return libero::crowd(problem, things, "start,object,x_m,y_m,z_m,qw,qx,qy,qz,value\n" + rows,
                          declared, turn);
   }
@@ -51,8 +54,8 @@ constexpr const char* kApart =
 TEST_CASE("what a task does not have stands upright on its table, free in each of its starts") {
   const auto put = Table().crowd(kApart, {"ketchup_1", "butter_1"});
   REQUIRE(put.size() == 2);
-  CHECK(put[0].object == "ketchup_1");
-  CHECK(put[1].object == "butter_1");
+  CHECK(put[0].what.object == "ketchup_1");
+  CHECK(put[1].what.object == "butter_1");
   for (const Foreign& one : put) {
     CHECK(one.z == doctest::Approx(0.9 + 0.04 + 0.001));  // the table's height, its own foot
     CHECK(away(one, -0.2, -0.2) > 0.03 + 0.05);           // the bowl in start 0, in start 1
@@ -99,5 +102,21 @@ TEST_CASE("what comes out of a fixture has its room") {
 }
 
 TEST_CASE("tasks get others by their turn") {
-  CHECK(Table().crowd(kApart, {"ketchup_1", "butter_1"}, 1)[0].object == "butter_1");
+  CHECK(Table().crowd(kApart, {"ketchup_1", "butter_1"}, 1)[0].what.object == "butter_1");
+}
+
+TEST_CASE("what is modelled on its side is put there as the benchmark stands it up") {
+  Table table;
+  table.turns = {"0.7071067811865476", "0.7071067811865475", "0", "0"};  // y of the model is up
+  Thing& ketchup = table.things.at("ketchup");
+  ketchup.low = {-0.03, -0.1, -0.02};
+  ketchup.high = {0.03, 0.06, 0.02};
+  const auto put = table.crowd(kApart, {"ketchup_1"});
+  REQUIRE(put.size() == 1);
+  CHECK(put[0].z == doctest::Approx(0.9 + 0.1 + 0.001));
+  CHECK(put[0].what.turn == table.turns);
+  const auto standing = standing_in("start,object\n0,milk_1,0,0,0.9,0.5,0.5,0.5,0.5,\n", "milk_1");
+  REQUIRE(standing);
+  CHECK(standing->turn == std::array<std::string, 4>{"0.5", "0.5", "0.5", "0.5"});
+  CHECK_FALSE(standing_in("start,object\n", "milk_1"));
 }
