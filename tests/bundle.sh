@@ -74,7 +74,7 @@ check "the image of the commit's time is made" images
 # The wheel for other systems: nothing that it loads is this system's but what every system has.
 check "the wheel is made" "$here/.ci/package" wheel
 in_wheel() {
-  python3 -m venv --system-site-packages "$work/env" && # numpy
+  /usr/bin/python3 -m venv --system-site-packages "$work/env" && # that has numpy, for which the wheel is made
     "$work/env/bin/pip" install -q --no-index --no-deps "$made"/vlaprobe-*-manylinux_*.whl &&
     (cd / && env -u PYTHONPATH "$work/env/bin/python" - "$work/wheel_run" <<'END'
 import os, re, sys, numpy, ssl, sqlite3

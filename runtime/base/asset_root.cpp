@@ -65,7 +65,8 @@ AssetRoot AssetRoot::found(const std::vector<std::string>& folders) {
 
 void AssetRoot::add(std::string path, Kind kind) {
   for (const Folder& known : folders_) {
-    if (known.path == path) return;
+    std::error_code error;
+    if (known.path == path || fs::equivalent(known.path, path, error)) return;
   }
   const auto behind = std::ranges::upper_bound(folders_, kind, {}, &Folder::kind);
   folders_.insert(behind, {std::move(path), kind});

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -428,10 +429,22 @@ class ProgramTools final : public Tools {
   }
 
   static std::string said_by(const Child& child) {
-    std::string said(kLongest, '\0');
-    const ssize_t got = ::pread(child.log, said.data(), said.size(), 0);
+    // Of much the end, where the reason of a failure stands.
+    constexpr std::size_t kMost = kLongest - 100;
+    struct stat log {};
+    const std::size_t size =
+        ::fstat(child.log, &log) == 0 ? static_cast<std::size_t>(log.st_size) : 0;
+    std::size_t before = size > kMost ? size - kMost : 0;
+    std::string said(size - before, '\0');
+    const ssize_t got = ::pread(child.log, said.data(), said.size(), static_cast<off_t>(before));
     said.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-    return said;
+    if (before == 0) return said;
+    // From the begin of a letter on.
+    while (!said.empty() && (static_cast<unsigned char>(said.front()) & 0xC0) == 0x80) {
+      said.erase(said.begin());
+      ++before;
+    }
+    return "... " + std::to_string(before) + " bytes before\n" + said;
   }
 
   bool begin(Child& child, const Words& words) const {

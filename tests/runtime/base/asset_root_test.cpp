@@ -60,6 +60,12 @@ TEST_CASE("what lies beside a text comes behind what was named and before what i
   CHECK(found.holder("objects/bowl/x") == folder / "own");
   CHECK(found.text() == "`" + (folder / "own") + "`");
 
+  // One folder under two names is one: nothing lies beside a text that the program has itself.
+  fs::create_directory_symlink(folder / "text", folder / "linked");
+  const std::vector<std::string> linked = {folder / "linked/my.probe"};
+  CHECK(AssetRoot::found({folder / "text"}).beside(linked).folders() ==
+        std::vector<std::string>{folder / "linked/assets", folder / "text"});
+
   // Kept are the folders that are needed; nothing, where it is as without any text.
   const std::vector<std::string> cup = {"objects/cup/x", "objects/bowl/x"}, bowl = {"objects/bowl/x"};
   CHECK(found.kept_for(cup).folders() ==
