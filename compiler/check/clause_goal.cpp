@@ -638,15 +638,8 @@ class ClauseGoal {
   std::optional<std::string> count_lack(const Clause& clause) const {
     for (const Clause::What& what : clause.what) {
       if (what.count == 0) continue;
-      std::map<std::pair<PredicateId, std::vector<Things>>, Things> alike;
-      for (const Goal::Asked& asked : goal_.asked) {
-        if (asked.of.size() < 2 || asked.of[0].size() != 1) continue;
-        const ObjectId thing = *asked.of[0].begin();
-        if (what.of.contains(thing))
-          alike[{asked.predicate, {asked.of.begin() + 1, asked.of.end()}}].insert(thing);
-      }
-      for (const auto& [same, things] : alike) {
-        if (things.size() > what.count)
+      for (const auto& [same, things] : asked_alike(what.of)) {
+        if (!same.second.empty() && things.size() > what.count)
           return "success asks `" + model_.predicates[same.first].name + "` of " +
                  std::to_string(things.size());
       }

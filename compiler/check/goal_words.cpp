@@ -165,7 +165,7 @@ class Shared {
     std::pair<std::vector<Judged>, Filled> key;
     for (const Metric& metric : task.judged)
       key.first.emplace_back(metric.name == "success", metric.expr, metric.readout);
-    fill(key.second, task);
+    key.second = filled(task, all);
     const auto [at, is_new] = goals_.try_emplace(std::move(key));
     if (is_new) at->second = goal_of(model_, task);
     return at->second;
@@ -195,18 +195,11 @@ class Shared {
   // same parts; by the same objects where expressions name some.
   using ClauseKey = std::tuple<TemplateId, std::vector<ExprRef>, Filled>;
   ClauseKey clause_key(const Task& task) const {
-    // With its scene and its layout, which say what stands there and on what it lies.
-    Filled filled = {static_cast<std::uint32_t>(task.scene),
-                     static_cast<std::uint32_t>(task.layout)};
-    for (std::size_t i = 0; i < model_.roles.size(); ++i) {
-      const auto objects = task.objects_in(model_.roles.id(i));
-      filled.push_back(static_cast<std::uint32_t>(objects.size()));
-      for (const ObjectId id : objects) {
-        if (model_.exprs.names_objects || !task.is_object(id))
-          filled.push_back(static_cast<std::uint32_t>(id));
-      }
-    }
-    return {task.say, success_of(task), std::move(filled)};
+    Filled by_role = filled(
+        task, [&](ObjectId id) { return model_.exprs.names_objects || !task.is_object(id); });
+    // The layout says what lies on what.
+    by_role.push_back(static_cast<std::uint32_t>(task.layout));
+    return {task.say, success_of(task), std::move(by_role)};
   }
   bool has_right_clauses(const ClauseKey& key) const { return right_clauses_.contains(key); }
   void keep_right_clauses(ClauseKey key) { right_clauses_.insert(std::move(key)); }
@@ -215,19 +208,23 @@ class Shared {
   using Judged = std::tuple<bool, ExprRef, plan::Readout>;
   using HeardKey = std::tuple<TemplateId, Filled, std::vector<ObjectId>>;
 
-  // The scene with them: `parts` are those of its fixtures.
-  void fill(Filled& by_role, const Task& task) const {
-    by_role.push_back(static_cast<std::uint32_t>(task.scene));
+  // The scene with them: `parts` are those of its fixtures. `is_told`: of which objects it matters
+  // who they are.
+  template <typename IsTold>
+  Filled filled(const Task& task, IsTold is_told) const {
+    Filled by_role = {static_cast<std::uint32_t>(task.scene)};
     for (std::size_t i = 0; i < model_.roles.size(); ++i) {
       const auto objects = task.objects_in(model_.roles.id(i));
       by_role.push_back(static_cast<std::uint32_t>(objects.size()));
-      for (const ObjectId id : objects) by_role.push_back(static_cast<std::uint32_t>(id));
+      for (const ObjectId id : objects) {
+        if (is_told(id)) by_role.push_back(static_cast<std::uint32_t>(id));
+      }
     }
+    return by_role;
   }
+  static bool all(ObjectId) { return true; }
   HeardKey heard_key(const Task& task) const {
-    Filled by_role;
-    fill(by_role, task);
-    return {task.say, std::move(by_role), task.objects()};
+    return {task.say, filled(task, all), task.objects()};
   }
 
   const Model& model_;

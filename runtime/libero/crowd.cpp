@@ -99,22 +99,21 @@ class Crowd {
     bool is_known = true;
     double sum_x = 0, sum_y = 0;
     std::size_t sources = 0;
-    each_row(table, [&](std::string_view row) {
+    for_each_row(table, [&](std::string_view row) {
       const std::vector<std::string> cells = cells_of(row);
       const BddlThing* const object = object_of(cells[kWhatCell]);
-      if (object == nullptr) return std::string();
+      if (object == nullptr) return;
       const Thing* const thing = thing_of(object->category);
       is_known = is_known && thing != nullptr;
-      if (thing == nullptr) return std::string();
+      if (thing == nullptr) return;
       const double x = std::stod(cells[kXCell]), y = std::stod(cells[kYCell]);
       taken_.push_back({x, y, extent_of(*thing, turn_of(cells)).radius});
       low_x_ = std::min(low_x_, x), high_x_ = std::max(high_x_, x);
       low_y_ = std::min(low_y_, y), high_y_ = std::max(high_y_, y);
       nouns_.insert(last_word(name_of(object->category)));
-      if (cells[kWhatCell] != "source") return std::string();
+      if (cells[kWhatCell] != "source") return;
       sum_x += x, sum_y += y;
       ++sources;
-      return std::string();
     });
     for (const BddlThing& fixture : problem_.fixtures) {
       const Thing* const thing = thing_of(fixture.category);
@@ -180,10 +179,9 @@ class Crowd {
 
 std::optional<Standing> standing_in(std::string_view table, const std::string& object) {
   std::optional<Standing> found;
-  each_row(table, [&](std::string_view row) {
+  for_each_row(table, [&](std::string_view row) {
     const std::vector<std::string> cells = cells_of(row);
     if (!found && cells[kWhatCell] == object) found = Standing{object, turn_of(cells)};
-    return std::string();
   });
   return found;
 }

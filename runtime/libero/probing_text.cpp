@@ -184,7 +184,7 @@ class TaskAsker {
                            one.y, one.z, fmt::join(one.what.turn, ","));
     };
     bool is_head = true;
-    each_row(task_.written.table, [&](std::string_view row) {
+    for_each_row(task_.written.table, [&](std::string_view row) {
       const std::string of(row.substr(0, row.find(',')));
       if (!is_head && of != start) {
         end_start();
@@ -192,7 +192,6 @@ class TaskAsker {
       }
       is_head = false;
       out += row;
-      return std::string();
     });
     end_start();
     return out;
@@ -233,10 +232,9 @@ class TaskAsker {
   // Each stands where the other stood, as high and turned as before.
   std::string with_places_of(const std::string& other) const {
     std::map<std::string, std::pair<std::string, std::string>> places;  // by start and thing
-    each_row(task_.written.table, [&](std::string_view row) {
+    for_each_row(task_.written.table, [&](std::string_view row) {
       const std::vector<std::string> cells = cells_of(row);
       places[cells[kStartCell] + "," + cells[kWhatCell]] = {cells[kXCell], cells[kYCell]};
-      return std::string();
     });
     return each_row(task_.written.table, [&](std::string_view row) {
       const std::string_view what = what_of(row);

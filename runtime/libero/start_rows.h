@@ -19,15 +19,21 @@ inline std::vector<std::string> cells_of(std::string_view row) {
   }
 }
 
-// What `each` makes of the rows, the head among them, one after the other; each ends its line.
+// The rows one after the other, the head first, each with the end of its line.
+template <typename See>
+void for_each_row(std::string_view table, const See& see) {
+  while (!table.empty()) {
+    const std::size_t end = table.find('\n') + 1;
+    see(table.substr(0, end));
+    table.remove_prefix(end);
+  }
+}
+
+// What `each` makes of them.
 template <typename Each>
 std::string each_row(std::string_view table, const Each& each) {
   std::string out;
-  while (!table.empty()) {
-    const std::size_t end = table.find('\n') + 1;
-    out += each(table.substr(0, end));
-    table.remove_prefix(end);
-  }
+  for_each_row(table, [&](std::string_view row) { out += each(row); });
   return out;
 }
 

@@ -42,6 +42,19 @@ std::vector<store::ResultRow> rows_of(const std::string& dir) {
   return all;
 }
 
+// Those of one process that asks one server of its own.
+std::vector<store::ResultRow> rows_of_one_server(const plan::Plan& plan, const SlurmOptions& options,
+                                                 const std::string& out) {
+  const test::PythonServer server("openpi_digest_server.py");
+  run::RunOptions single = options.run;
+  single.policy = "openpi://127.0.0.1:" + server.port();
+  single.name = options.run.policy;
+  single.out = out;
+  const auto summary = run::run(plan, single);
+  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
+  return rows_of(out);
+}
+
 // How often a task was started, by its log.
 int starts_in(const std::string& log) {
   const auto text = read_file(log);
@@ -164,14 +177,7 @@ TEST_CASE("each task starts its own server, and the rows are those of a run with
   for (const std::string& note : report->notes) MESSAGE(note);
   CHECK(report->stored == 6);
 
-  const test::PythonServer server("openpi_digest_server.py");
-  run::RunOptions single = options.run;
-  single.policy = "openpi://127.0.0.1:" + server.port();
-  single.name = options.run.policy;
-  single.out = folder / "single";
-  const auto summary = run::run(plan, single);
-  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-  CHECK(rows_of(folder / "run") == rows_of(folder / "single"));
+  CHECK(rows_of(folder / "run") == rows_of_one_server(plan, options, folder / "single"));
 }
 
 TEST_CASE("one server on a node of its own is asked by shards on others, and started again when it dies") {
@@ -204,14 +210,7 @@ TEST_CASE("one server on a node of its own is asked by shards on others, and sta
   CHECK_MESSAGE(log->find("the server ended before it answered") != std::string::npos, *log);
   CHECK_MESSAGE(report->stored == 6, *log);
 
-  const test::PythonServer server("openpi_digest_server.py");
-  run::RunOptions single = options.run;
-  single.policy = "openpi://127.0.0.1:" + server.port();
-  single.name = options.run.policy;
-  single.out = folder / "single";
-  const auto summary = run::run(plan, single);
-  REQUIRE_MESSAGE(summary.ok(), to_text(summary.failure()));
-  CHECK(rows_of(folder / "a run") == rows_of(folder / "single"));
+  CHECK(rows_of(folder / "a run") == rows_of_one_server(plan, options, folder / "single"));
 }
 
 TEST_CASE("tasks that a more urgent job preempts go on behind it") {
