@@ -67,23 +67,26 @@ double width(const scene::CollisionShape& shape, const Quat& turn) {
 
 struct Hold {
   bool held = false;
+  bool wedged = false;  // by the limits of the fingers, which then are no grasp: it creeps
   double slip = 0, turn = 0;  // m, rad
 };
 
 // Lifts a body lying at its place, waits until it hangs still and watches it in the hand.
 Hold lift_and_hold(Bench* bench, const Vec3& center, int watch_substeps) {
+  const double lay = bench->world->body(0).center.z();
   close_on(bench, center);
   bench->move(center, center + Vec3(0, 0, 0.1), 5);
   bench->run(500);
   const Pose before = bench->in_gripper(0);
   Hold out;
+  out.wedged = std::max(bench->world->joints()[6], bench->world->joints()[7]) > kOpen + 1e-4;
   for (int i = 0; i < watch_substeps / 100; ++i) {
     bench->run(100);
     const Pose now = bench->in_gripper(0);
     out.slip = std::max(out.slip, (now.position - before.position).norm());
     out.turn = std::max(out.turn, 2 * (before.rotation.conjugate() * now.rotation).vec().norm());
   }
-  out.held = bench->world->body(0).center.z() > center.z() + 0.08;
+  out.held = bench->world->body(0).center.z() > lay + 0.08;
   return out;
 }
 
@@ -120,15 +123,18 @@ TEST_CASE("table: slip in the hand over 10 s of every object that fits it") {
     if (!make_bench(&bench, {body})) return;
     bench.run(500);
     const Hold hold = lift_and_hold(&bench, bench.world->body(0).center, 5000);
+    if (hold.wedged) {
+      MESSAGE(item.name, ": the hand does not span it, the fingers' limits wedge it");
+      CHECK(!is_required(item.name));
+      continue;
+    }
     if (!hold.held) {
       MESSAGE(item.name, ": slid out of the fingers on the way up");
       CHECK(!is_required(item.name));
       continue;
     }
     MESSAGE(item.name, ": slip ", hold.slip * 1e3, " mm, turn ", hold.turn * 57.29578, " deg");
-    // The slim can of the Google suite, 58.5 mm between fingers that open to 60, creeps by 3.6 mm here,
-    // by 2.6 where it weighs a fifth. Why is not known.
-    CHECK(hold.slip < (item.name == "slim_can" ? 5e-3 : 1e-5));
+    CHECK(hold.slip < 1e-5);
     if (item.name == "carrot" || item.name == "cube 3 cm") {
       CHECK(hold.slip < 1e-6);
       CHECK(hold.turn < 0.001 / 57.3);

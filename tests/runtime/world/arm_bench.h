@@ -124,12 +124,14 @@ inline BodySpec lying(const char* name, std::shared_ptr<const scene::CollisionSh
   return body;
 }
 
+inline constexpr double kOpen = 0.037;  // m, the fingers' upper limit
+
 inline const Vec3 kSpot(-0.15, 0.0, kTable + 0.015);
 
 // Puts the open gripper around the spot and closes.
 inline void close_on(Bench* bench, const Vec3& spot) {
   std::array<double, 8> q = bench->reach(spot);
-  q[6] = q[7] = 0.037;
+  q[6] = q[7] = kOpen;
   const auto all = bench->world->joints();
   std::vector<double> placed(all.begin(), all.end());
   std::copy(q.begin(), q.end(), placed.begin());
