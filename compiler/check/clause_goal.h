@@ -18,8 +18,8 @@ std::optional<std::string> clause_lack(const Model& model, const Task& task, con
                                        const Goal& goal);
 
 // Words of an instruction that are held to nothing: they were not understood, or success measures
-// nothing that they ask for. Of all other words clause_lack() knows that they fit, or says that they
-// do not.
+// nothing that they ask for. Of all other words clause_lack() knows that they fit, or says that
+// they do not.
 struct NotHeld {
   std::string words, why;
 };

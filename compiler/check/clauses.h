@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "compiler/check/goal.h"
@@ -29,20 +28,25 @@ struct Clause {
     bool is_some = false;     // "one of the drawers", "a drawer", "A or B": it is not said which
   };
   std::vector<What> what;
-  Things where;         // where it goes, by all that the words may mean
-  // What is said of those places: it lies on or over them, under them, or at their sides; several of
-  // one clause are mixed.
-  enum class Where : std::uint8_t { kElsewhere, kOn, kUnder, kBeside, kMixed } lies =
-      Where::kElsewhere;
-  bool goes = false;    // it is said where to, in words that are known
+  Things where;  // where it goes, by all that the words may mean
+  // What is said of those places: it lies on or over them, under them, or at their sides; several
+  // of one clause are mixed.
+  enum class Where : std::uint8_t {
+    kElsewhere,
+    kOn,
+    kUnder,
+    kBeside,
+    kMixed
+  } lies = Where::kElsewhere;
+  bool goes = false;         // it is said where to, in words that are known
   bool is_anywhere = false;  // "in a drawer", "on either of the plates"
-  Things from;          // "take the cup off the plate"
-  std::string ground;   // "on the table": the word, of what is no thing
-  std::string repeats;  // "twice"
-  bool certain = true;  // all of its words were understood
-  std::string stopped;  // where not: the word that was not
-  bool denied = false;  // "do not put ..": the first of an instruction, and alone
-  std::string words;    // "put the red block on the tray"
+  Things from;               // "take the cup off the plate"
+  std::string ground;        // "on the table": the word, of what is no thing
+  std::string repeats;       // "twice"
+  bool certain = true;       // all of its words were understood
+  std::string stopped;       // where not: the word that was not
+  bool denied = false;       // "do not put ..": the first of an instruction, and alone
+  std::string words;         // "put the red block on the tray"
 };
 
 // "the red block first", "the red block last", beside clauses or of one.
@@ -70,12 +74,5 @@ struct Clauses {
 
 // In: a complete task.
 Clauses clauses_of(const Model& model, const Task& task, Callings& callings);
-
-// The number that a word is: 2 of "both" and "two"; 0 of others.
-std::size_t number_of(std::string_view word);
-
-// What words count that stand behind them: 3 of "put all three of the"; 0 where nothing does, and
-// of "two of", which are some of more.
-std::size_t count_at_end(std::string_view text);
 
 }  // namespace probe::sema

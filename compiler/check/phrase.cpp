@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "compiler/check/check.h"
-#include "compiler/check/clauses.h"
+#include "compiler/check/count_words.h"
 #include "compiler/check/starts.h"
 #include "compiler/check/unclear_starts.h"
 #include "compiler/define/in_start.h"

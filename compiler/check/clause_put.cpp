@@ -1,0 +1,171 @@
+// Where a clause puts things, held to where success wants them.
+#include <algorithm>
+#include <vector>
+
+#include "compiler/check/clause_lacks.h"
+#include "compiler/check/relation_words.h"
+#include "runtime/base/utf8.h"
+
+namespace probe::sema {
+namespace {
+
+bool is_measured_beside(const ClauseFacts& facts, const Things& things) {
+  const auto& beside = facts.goal.measured_beside;
+  return std::any_of(beside.begin(), beside.end(), [&](const auto& two) {
+    return things.contains(two.first) || things.contains(two.second);
+  });
+}
+
+// "put the cube between the can and the tray" of which success is that the can is between.
+Lack between_lack(const ClauseFacts& facts, const Clause& clause) {
+  if (clause.lies != Clause::Where::kBeside || clause.what.size() != 1 ||
+      clause.what[0].of.size() != 1 || clause.where.size() < 2)
+    return std::nullopt;
+  const Things& said = clause.what[0].of;
+  const Goal::Asked* turned = nullptr;
+  for (const Goal::Asked& asked : facts.goal.asked) {
+    const Predicate& relation = facts.model.predicates[asked.predicate];
+    if (!relation.is_relation || asked.of.size() != 3) continue;
+    if (asked.of[0] == said) return std::nullopt;
+    const bool is_in_it = asked.of[1] == said || asked.of[2] == said;
+    if (is_in_it && asked.of[0].size() == 1 && clause.where.contains(*asked.of[0].begin()))
+      turned = &asked;
+  }
+  if (turned == nullptr) return std::nullopt;
+  return "success asks `" + facts.model.predicates[turned->predicate].name + "` of " +
+         facts.name(*turned->of[0].begin());
+}
+
+// "put the plate on the carrot" of which success wants the carrot to be higher.
+Lack height_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
+                 const Clause& clause) {
+  const bool is_on = clause.lies == Clause::Where::kOn;
+  if (moved.size() != 1 || clause.where.size() != 1 ||
+      (!is_on && clause.lies != Clause::Where::kUnder))
+    return std::nullopt;
+  const ObjectId thing = moved.front(), place = *clause.where.begin();
+  const ObjectId high = is_on ? thing : place, low = is_on ? place : thing;
+  if (!facts.goal.above.contains({low, high}) || facts.goal.above.contains({high, low}))
+    return std::nullopt;
+  return "success wants " + facts.name(low) + " to be higher than " + facts.name(high);
+}
+
+// "next to the plate" of which success wants it to be on the plate; "on the plate" of which it is
+// to be apart from it.
+Lack beside_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved, const Clause& clause,
+                 const Goal::Bearing& all) {
+  if (moved.size() != 1 || clause.where.size() != 1 || !all.near || !all.asked) return std::nullopt;
+  const ObjectId thing = moved.front(), place = *clause.where.begin();
+  if (clause.lies == Clause::Where::kBeside && !all.apart &&
+      facts.goal.above.contains({thing, place}) && !facts.goal.above.contains({place, thing}))
+    return "success wants " + facts.name(thing) + " to be higher than " + facts.name(place);
+  if (clause.lies != Clause::Where::kOn) return std::nullopt;
+  for (const Goal::Asked& asked : facts.goal.asked) {
+    const Predicate& relation = facts.model.predicates[asked.predicate];
+    if (!relation.is_relation || asked.of.size() < 2 || facts.goal.above.contains({thing, place}))
+      continue;
+    const bool is_of_both = (asked.of[0] == Things{thing} && asked.of[1] == Things{place}) ||
+                            (asked.of[0] == Things{place} && asked.of[1] == Things{thing});
+    if (is_of_both && !relation.words.empty() && !says(fold_case(clause.words), relation))
+      return "success asks `" + relation.name + "`, which is said by \"" + relation.words.front() +
+             "\"";
+  }
+  return std::nullopt;
+}
+
+// "into a drawer" of which success wants a certain one.
+Lack anywhere_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
+                   const Clause& clause) {
+  if (!clause.is_anywhere || moved.size() != 1) return std::nullopt;
+  Things wanted, free;
+  for (const ObjectId place : clause.where) {
+    const auto one = facts.bearing(moved[0], place);
+    (one && one->asked ? wanted : free).insert(place);
+  }
+  // A part and its region are one place.
+  for (const ObjectId place : wanted)
+    std::erase_if(free, [&](ObjectId other) { return facts.is_same_place(place, other); });
+  if (wanted.empty() || free.empty()) return std::nullopt;
+  const ObjectId other = *wanted.begin();
+  const bool is_one = std::all_of(wanted.begin(), wanted.end(),
+                                  [&](ObjectId id) { return facts.is_same_place(id, other); });
+  if (!is_one) return std::nullopt;
+  return "success " + facts.asks(moved[0], other) + " alone";
+}
+
+// Success is about other things.
+Lack unspoken(const ClauseFacts& facts, const std::vector<ObjectId>& moved, const Clause& clause) {
+  if (facts.goal.spoken.empty() && facts.goal.ways.empty()) return std::nullopt;
+  // Another metric may judge it; and what is not understood may say why it is not judged.
+  if (is_measured_beside(facts, {moved.begin(), moved.end()}) || !facts.clauses.is_whole)
+    return std::nullopt;
+  if (moved.size() == 1) return "success asks nothing of " + facts.name(moved.front());
+  const auto& spoken = facts.goal.spoken;
+  const bool moves_none = std::none_of(spoken.begin(), spoken.end(),
+                                       [&](ObjectId id) { return facts.task.is_object(id); });
+  const bool is_there = std::any_of(clause.where.begin(), clause.where.end(), [&](ObjectId said) {
+    return facts.is_spoken(said) || std::any_of(spoken.begin(), spoken.end(), [&](ObjectId id) {
+             return facts.is_same_place(id, said);
+           });
+  });
+  if (!moves_none || is_there || clause.where.empty()) return std::nullopt;
+  return "success asks nothing of " + facts.name(*clause.where.begin());
+}
+
+Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
+                const Clause& clause) {
+  Goal::Bearing all;
+  bool is_measured = false;
+  for (const ObjectId thing : moved) {
+    for (const ObjectId place : clause.where) {
+      const auto one = facts.bearing(thing, place);
+      if (!one) continue;
+      is_measured = true;
+      all.near = all.near || one->near;
+      all.apart = all.apart || one->apart;
+      all.other = all.other || one->other;
+      all.asked = all.asked || one->asked;
+    }
+  }
+  if (is_measured) {
+    if (auto why = height_lack(facts, moved, clause)) return why;
+    if (auto why = beside_lack(facts, moved, clause, all)) return why;
+    if (auto why = anywhere_lack(facts, moved, clause)) return why;
+    // Not there is all that it wants.
+    if (all.near || !all.apart || (all.other && all.asked) || moved.size() != 1 ||
+        clause.where.empty())
+      return std::nullopt;
+    return "success wants " + facts.name(moved.front()) + " not to be there";
+  }
+  const bool speaks = std::any_of(moved.begin(), moved.end(),
+                                  [&](ObjectId thing) { return facts.is_spoken(thing); });
+  if (!speaks) return unspoken(facts, moved, clause);
+  if (moved.size() != 1) return std::nullopt;
+  const ObjectId thing = moved.front();
+  const bool is_beside = clause.lies == Clause::Where::kBeside;
+  for (const ObjectId place : is_beside ? facts.measured_against(thing) : facts.wanted_at(thing)) {
+    const bool may_be_there =
+        std::any_of(clause.where.begin(), clause.where.end(), [&](ObjectId said) {
+          return facts.is_same_place(said, place) || facts.lies_on(said, place);
+        });
+    if (!may_be_there) return "success " + facts.asks(thing, place);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Lack put_lack(const ClauseFacts& facts, const Clause& clause) {
+  if (facts.goal.asks_of_all) return std::nullopt;
+  if (auto why = between_lack(facts, clause)) return why;
+  for (const Clause::What& what : clause.what) {
+    std::vector<ObjectId> moved;
+    for (const ObjectId id : what.of) {
+      if (facts.task.is_object(id) && !clause.where.contains(id)) moved.push_back(id);
+    }
+    if (auto why = moved_lack(facts, moved, clause)) return why;
+  }
+  return std::nullopt;
+}
+
+}  // namespace probe::sema

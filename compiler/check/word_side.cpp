@@ -1,0 +1,49 @@
+// "left of", "behind": held to whether success tells one side from another.
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "compiler/check/word_lacks.h"
+
+namespace probe::sema {
+namespace {
+
+// "On the plate behind the towel": which plate.
+bool follows_place(Told& told, std::size_t at) {
+  const auto& words = told.said().words;
+  std::size_t noun = at;
+  while (noun > 0 && words[noun - 1].of.empty()) --noun;
+  if (noun == 0 || noun != at) return false;
+  constexpr auto kOn = std::to_array<std::string_view>({"on", "in", "into", "onto", "inside"});
+  for (std::size_t i = noun - 1; i > 0 && i + 4 > noun; --i) {
+    if (std::ranges::find(kOn, words[i - 1].text) != kOn.end()) return true;
+    if (!words[i - 1].of.empty() || words[i - 1].ends) return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::optional<std::string> side_word_lack(Told& told, const GoalWords& one) {
+  if (told.goal().tells_sides) return std::nullopt;
+  const std::size_t length = folded_words(one.words).size();
+  for (auto at = told.said().find(one.words); at; at = told.said().find(one.words, *at + 1)) {
+    // "next to the left knob" says of a knob which it is.
+    const std::size_t next = *at + length;
+    const bool is_side = one.words.ends_with("left") || one.words.ends_with("right");
+    if (is_side && next < told.said().words.size()) {
+      const std::string& word = told.said().words[next].text;
+      if (word != "of" && word != "and" && word != "then" && word != "side") continue;
+    }
+    // "Pick up the book on the right" says which book; "take it to the right" says where to.
+    const auto& words = told.said().words;
+    const bool says_whither =
+        one.words.starts_with("to the") ||
+        (*at >= 2 && words[*at - 2].text == "to" && words[*at - 1].text == "the");
+    if (!says_whither && (told.tells_which(*at) || follows_place(told, *at))) continue;
+    return "its success measures nothing that tells one side from another";
+  }
+  return std::nullopt;
+}
+
+}  // namespace probe::sema
