@@ -120,6 +120,39 @@ bool Called::has_part(const Things& of, ObjectId thing) const {
          });
 }
 
+std::optional<std::pair<std::string, std::string>> Called::other_than(const std::string& word,
+                                                                      const Things& of) const {
+  std::optional<std::pair<std::string, std::string>> first;
+  for (const ObjectId id : of) {
+    const Object& object = model_.objects[id];
+    // How a thing looks that was painted is said elsewhere.
+    if (object.paint || object.texture) return std::nullopt;
+    bool is_other = false;
+    for (std::size_t i = 0; i < object.values.size(); ++i) {
+      const Attribute& attribute = model_.attributes[model_.attributes.id(i)];
+      const auto at = std::find(attribute.values.begin(), attribute.values.end(), word);
+      if (at == attribute.values.end()) continue;
+      const auto& own = object.values[i];
+      const auto value = static_cast<std::uint32_t>(at - attribute.values.begin());
+      if (own.empty() || std::find(own.begin(), own.end(), value) != own.end()) return std::nullopt;
+      is_other = true;
+      if (!first) first.emplace(attribute.name, attribute.values[own.front()]);
+    }
+    if (!is_other) return std::nullopt;
+  }
+  return first;
+}
+
+Things Called::with(std::string_view adjective, const Things& of) const {
+  Things found;
+  for (const Calling* thing : things_) {
+    if (of.contains(thing->id) && std::find(thing->adjectives.begin(), thing->adjectives.end(),
+                                            adjective) != thing->adjectives.end())
+      found.insert(thing->id);
+  }
+  return found;
+}
+
 bool Called::is_adjective(std::string_view word) const {
   return std::any_of(things_.begin(), things_.end(), [&](const Calling* thing) {
     return std::find(thing->adjectives.begin(), thing->adjectives.end(), word) !=

@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "compiler/check/goal.h"
@@ -48,6 +50,16 @@ class Called {
 
   // Whether a word stands before the noun of some name, or is a value of an attribute.
   bool is_adjective(std::string_view word) const;
+
+  // Of a word that is a value of some attribute and true of none of these, as far as is known: the
+  // attribute, and what it is of the first of them.
+  std::optional<std::pair<std::string, std::string>> other_than(const std::string& word,
+                                                                const Things& of) const;
+
+  bool is_of_fixture(ObjectId thing) const { return model_.objects[thing].of.has_value(); }
+
+  // Those that a word before their noun is true of.
+  Things with(std::string_view adjective, const Things& of) const;
 
   // Whether a thing is of one of the same fixtures as these.
   bool has_part(const Things& of, ObjectId thing) const;

@@ -4,6 +4,7 @@
 #include "compiler/check/clause_lacks.h"
 
 namespace probe::sema {
+
 Lack joint_lack(const ClauseFacts& facts, const Clause& clause, const Clause::What& what) {
   const Things parts = facts.parts_of(what);
   if (parts.empty() || facts.goal.moves_unnamed) return std::nullopt;
@@ -20,21 +21,28 @@ Lack joint_lack(const ClauseFacts& facts, const Clause& clause, const Clause::Wh
   }
   const bool closes = clause.does == Does::kCloses;
   Goal::Way all;
-  bool is_measured = false, is_any_free = false;  // of several it may be any that is meant
+  bool has_way = false, is_any_free = false;  // of several it may be any that is meant
   for (const ObjectId part : parts) {
     if (facts.is_spoken(part) && !facts.goal.ways.contains(part)) return std::nullopt;
     const auto way = facts.goal.ways.find(part);
     is_any_free = is_any_free || way == facts.goal.ways.end();
     if (way == facts.goal.ways.end()) continue;
-    is_measured = true;
+    has_way = true;
     all.opens = all.opens || way->second.opens;
     all.closes = all.closes || way->second.closes;
     all.other = all.other || way->second.other;
   }
-  if (is_measured) {
+  if (has_way) {
     if (is_any_free || all.other || (closes ? all.closes : all.opens)) return std::nullopt;
     return "success is that " + facts.name(*parts.begin()) + " has moved at " +
            (closes ? "least" : "most") + " so far";
+  }
+  // What is kept as it is may be the matter of another metric.
+  if (clause.is_kept) {
+    for (const ObjectId part : parts) {
+      if (is_measured(facts.model, facts.task, part)) return std::nullopt;
+    }
+    return "no metric measures anything of " + facts.name(*parts.begin());
   }
   const bool is_about = std::any_of(parts.begin(), parts.end(), [&](ObjectId part) {
     return std::any_of(facts.goal.bearings.begin(), facts.goal.bearings.end(),

@@ -23,6 +23,15 @@ std::size_t ClauseNouns::before_noun(std::size_t at, Clause::What& how) const {
     // "One cube", not "put the other one".
     const bool is_one =
         word.is == WordIs::kIt && text == "one" && called_.find(texts(at + 1, 4)).length > 0;
+    if (word.is == WordIs::kNone) {
+      at += word.length;
+      continue;
+    }
+    if (text == "pair" && at + 1 < words_.size() && words_[at + 1].text == "of") {
+      how.count = 2;
+      at += 2;
+      continue;
+    }
     if (word.is == WordIs::kSome || is_one) {
       how.is_some = true;
       at += word.length;
@@ -79,8 +88,12 @@ std::optional<ClauseNouns::Noun> ClauseNouns::noun(std::size_t at) {
   if (auto of_two = shared_noun(at)) return of_two;
   // "The ripe banana": a word that tells no two things apart.
   const Called::Found name = called_.find(texts(at + 1, 4));
-  if (name.length == 0 || name.of.size() != 1 || words_[at].ends) return std::nullopt;
+  if (name.length == 0 || words_[at].ends) return std::nullopt;
   out_.is_pure = false;
+  if (auto other = called_.other_than(words_[at].text, name.of))
+    out_.mistaken.push_back({*name.of.begin(), shown(at, at + 1 + name.length),
+                             std::move(other->first), std::move(other->second)});
+  if (name.of.size() != 1) return std::nullopt;
   found.what.push_back({name.of, 0, false});
   found.end = at + 1 + name.length;
   return found;

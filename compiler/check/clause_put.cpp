@@ -36,18 +36,31 @@ Lack between_lack(const ClauseFacts& facts, const Clause& clause) {
          facts.name(*turned->of[0].begin());
 }
 
+// Whether success asks something of the first of two and the second, in this order: what hangs on a
+// hook is put on it, and is lower.
+bool asks_in_turn(const ClauseFacts& facts, ObjectId a, ObjectId b) {
+  return std::any_of(facts.goal.asked.begin(), facts.goal.asked.end(), [&](const auto& asked) {
+    return asked.of.size() > 1 && asked.of[0] == Things{a} && asked.of[1] == Things{b};
+  });
+}
+
 // "put the plate on the carrot" of which success wants the carrot to be higher.
 Lack height_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
                  const Clause& clause) {
   const bool is_on = clause.lies == Clause::Where::kOn;
-  if (moved.size() != 1 || clause.where.size() != 1 ||
-      (!is_on && clause.lies != Clause::Where::kUnder))
+  if (moved.size() != 1 || clause.where.empty() || (!is_on && clause.lies != Clause::Where::kUnder))
     return std::nullopt;
-  const ObjectId thing = moved.front(), place = *clause.where.begin();
-  const ObjectId high = is_on ? thing : place, low = is_on ? place : thing;
-  if (!facts.goal.above.contains({low, high}) || facts.goal.above.contains({high, low}))
-    return std::nullopt;
-  return "success wants " + facts.name(low) + " to be higher than " + facts.name(high);
+  const ObjectId thing = moved.front();
+  for (const ObjectId place : clause.where) {
+    const ObjectId high = is_on ? thing : place, low = is_on ? place : thing;
+    if (!facts.goal.above.contains({low, high}) || facts.goal.above.contains({high, low}))
+      return std::nullopt;
+    if (is_on && (!asks_in_turn(facts, place, thing) || asks_in_turn(facts, thing, place)))
+      return std::nullopt;
+  }
+  const ObjectId place = *clause.where.begin();
+  return "success wants " + facts.name(is_on ? place : thing) + " to be higher than " +
+         facts.name(is_on ? thing : place);
 }
 
 // "next to the plate" of which success wants it to be on the plate; "on the plate" of which it is
@@ -95,7 +108,8 @@ Lack anywhere_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
 
 // Success is about other things.
 Lack unspoken(const ClauseFacts& facts, const std::vector<ObjectId>& moved, const Clause& clause) {
-  if (facts.goal.spoken.empty() && facts.goal.ways.empty()) return std::nullopt;
+  if (facts.goal.speaks_of_all && facts.goal.spoken.empty() && facts.goal.ways.empty())
+    return std::nullopt;
   // Another metric may judge it; and what is not understood may say why it is not judged.
   if (is_measured_beside(facts, {moved.begin(), moved.end()}) || !facts.clauses.is_whole)
     return std::nullopt;
@@ -110,6 +124,24 @@ Lack unspoken(const ClauseFacts& facts, const std::vector<ObjectId>& moved, cons
   });
   if (!moves_none || is_there || clause.where.empty()) return std::nullopt;
   return "success asks nothing of " + facts.name(*clause.where.begin());
+}
+
+// "put the cube on the tray" of which success is that the cube was lifted.
+Lack nowhere_lack(const ClauseFacts& facts, ObjectId thing, const Clause& clause) {
+  const Goal& goal = facts.goal;
+  const bool is_somewhere =
+      goal.tells_sides || goal.speaks_of_all || goal.asks_of_all || !goal.ways.empty() ||
+      std::any_of(goal.bearings.begin(), goal.bearings.end(), [&](const auto& one) {
+        return one.first.first == thing || one.first.second == thing;
+      });
+  const bool goes_to_objects = std::all_of(clause.where.begin(), clause.where.end(),
+                                           [&](ObjectId id) { return facts.task.is_object(id); });
+  const bool is_changed = goal.raised.contains(thing) || goal.shifted.contains(thing);
+  if (!is_changed || is_somewhere || clause.where.empty() || !goes_to_objects ||
+      !facts.clauses.is_whole || facts.is_moved_later(clause, thing) ||
+      is_measured_beside(facts, {thing}))
+    return std::nullopt;
+  return "success measures " + facts.name(thing) + " against nothing";
 }
 
 Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
@@ -142,18 +174,37 @@ Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
   if (!speaks) return unspoken(facts, moved, clause);
   if (moved.size() != 1) return std::nullopt;
   const ObjectId thing = moved.front();
-  const bool is_beside = clause.lies == Clause::Where::kBeside;
-  for (const ObjectId place : is_beside ? facts.measured_against(thing) : facts.wanted_at(thing)) {
+  for (const ObjectId place :
+       clause.is_aside() ? facts.measured_against(thing) : facts.wanted_at(thing)) {
     const bool may_be_there =
         std::any_of(clause.where.begin(), clause.where.end(), [&](ObjectId said) {
           return facts.is_same_place(said, place) || facts.lies_on(said, place);
         });
     if (!may_be_there) return "success " + facts.asks(thing, place);
   }
-  return std::nullopt;
+  return nowhere_lack(facts, thing, clause);
 }
 
 }  // namespace
+
+Lack spared_lack(const ClauseFacts& facts, const Clause& clause) {
+  if (clause.denied) return std::nullopt;
+  for (const ObjectId spared : clause.spared) {
+    const auto way = facts.goal.ways.find(spared);
+    const bool is_way = way != facts.goal.ways.end() && !way->second.other &&
+                        (clause.does == Does::kOpens    ? way->second.opens && !way->second.closes
+                         : clause.does == Does::kCloses ? way->second.closes && !way->second.opens
+                                                        : false);
+    if (is_way)
+      return "success is that " + facts.name(spared) + " has moved " +
+             (clause.does == Does::kOpens ? "at least so far as well" : "at most so far as well");
+    if (clause.does != Does::kPuts || clause.where.size() != 1) continue;
+    const auto one = facts.bearing(spared, *clause.where.begin());
+    if (one && one->near && one->asked && !one->apart)
+      return "success wants " + facts.name(spared) + " to be there as well";
+  }
+  return std::nullopt;
+}
 
 Lack put_lack(const ClauseFacts& facts, const Clause& clause) {
   if (facts.goal.asks_of_all) return std::nullopt;

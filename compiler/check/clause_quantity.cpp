@@ -63,8 +63,15 @@ Lack either_lack(const ClauseFacts& facts, const Clause& clause) {
   for (const Things& two : facts.goal.either) {
     if (says_each(two)) return "succeeds with one of the two (`or`, not `and`)";
   }
+  // "The cubes", "all three drawers".
+  const auto says_them = [&](const Things& things) {
+    return std::any_of(clause.what.begin(), clause.what.end(), [&](const Clause::What& what) {
+      return !what.is_some && !what.is_back && (what.is_several || what.is_each) &&
+             std::includes(what.of.begin(), what.of.end(), things.begin(), things.end());
+    });
+  };
   for (const Things& some : facts.goal.one_of) {
-    if (says_each(some))
+    if (says_each(some) || (says_them(some) && !is_each_asked(facts, some)))
       return "succeeds with one of " + std::to_string(some.size()) + " (`any`, not `all`)";
   }
   return std::nullopt;
@@ -112,11 +119,17 @@ Lack of_several(const ClauseFacts& facts, const Clause::What& what, const Things
 Lack count_lack(const ClauseFacts& facts, const Clause& clause) {
   for (const Clause::What& what : clause.what) {
     if (what.count == 0) continue;
-    for (const auto& [same, things] : asked_alike(facts, what.of)) {
-      if (!same.second.empty() && things.size() > what.count)
-        return "success asks `" + facts.model.predicates[same.first].name + "` of " +
-               std::to_string(things.size());
-    }
+    if (what.is_several && !what.is_back && !what.is_some && what.of.size() < what.count)
+      return std::to_string(what.of.size()) +
+             (what.of.size() == 1 ? " thing is called so" : " things are called so");
+    // The last one declared speaks of the others.
+    const Alike alike = asked_alike(facts, what.of);
+    const auto more = std::find_if(alike.rbegin(), alike.rend(), [&](const auto& one) {
+      return !one.first.second.empty() && one.second.size() > what.count;
+    });
+    if (more != alike.rend())
+      return "success asks `" + facts.model.predicates[more->first.first].name + "` of " +
+             std::to_string(more->second.size());
   }
   return std::nullopt;
 }

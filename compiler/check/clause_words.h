@@ -31,6 +31,8 @@ enum class WordIs : std::uint8_t {
   kThe,
   kEach,
   kSome,
+  kNone,
+  kBut,
   kIs,
   kWhere,
   kBegins,

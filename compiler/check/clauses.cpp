@@ -32,16 +32,18 @@ class ClauseReader : public ClauseNouns {
         break;
       }
       if (word.is == WordIs::kSpares && kept()) continue;
-      if (word.is == WordIs::kSpares || word.is == WordIs::kDenies) {
-        const bool is_inside = word.is == WordIs::kDenies && at_ > 0 && !is_apart(at_);
+      const bool is_but = word.is == WordIs::kBut && words_[at_].text == "but" && word.length == 1;
+      const bool denies = word.is == WordIs::kDenies || (word.is == WordIs::kBut && !is_but);
+      if (word.is == WordIs::kSpares || denies) {
+        const bool is_inside = denies && at_ > 0 && !is_apart(at_);
         if (is_inside && !out_.all.empty()) doubt(out_.all.back(), at_);
         stop();
         break;
       }
       if (is_verb(word.is)) {
         clause(word);
-      } else if (joins(word.is) || word.is == WordIs::kIdle || word.is == WordIs::kTurn) {
-        joined_ = joined_ || joins(word.is);
+      } else if (joins(word.is) || is_but || word.is == WordIs::kIdle || word.is == WordIs::kTurn) {
+        joined_ = joined_ || joins(word.is) || is_but;
         at_ += word.length;
       } else if (!leading_place() && !same_again() && !turn() && !stated()) {
         unknown();
@@ -82,7 +84,13 @@ class ClauseReader : public ClauseNouns {
     }
     const std::size_t from = at_;
     at_ += verb.length;
+    covers_ = words_[from].text == "cover";
     finish(std::move(clause), from);
+    covers_ = false;
+    // What hangs on a hook is lower than it.
+    Clause& read = out_.all.back();
+    if (words_[from].text == "hang" && read.lies == Clause::Where::kOn)
+      read.lies = Clause::Where::kElsewhere;
   }
 
   void idle(Clause& clause) {
@@ -99,6 +107,13 @@ class ClauseReader : public ClauseNouns {
       // "Drop it off on the plate".
       const bool is_particle = word.is == WordIs::kFrom && !noun(at_ + word.length);
       if (word.is != WordIs::kIdle && !is_particle) return;
+      // "Open the drawer and take the cup out".
+      if (clause.does == Clause::Does::kTakes && words_[at_].text == "out") {
+        for (const ObjectId id : out_.said) {
+          if (called_.is_of_fixture(id)) clause.from.insert(id);
+        }
+        clause.begins_there = !clause.from.empty();
+      }
       at_ += word.length;
       if (ends_at(at_)) return;
     }
@@ -108,6 +123,7 @@ class ClauseReader : public ClauseNouns {
   void finish(Clause clause, std::size_t from) {
     turn_ = Ordinal::kNone;
     idle(clause);
+    clause.denied = match(at_).is == WordIs::kNone;
     // A clause without a verb begins behind a sign.
     if (at_ == from || !ends_at(at_)) {
       if (auto what = nouns(at_, false); what && !what->is_place) {
@@ -120,7 +136,7 @@ class ClauseReader : public ClauseNouns {
     clause.goes = !pending_.empty();
     pending_.clear();
     while (at_ < words_.size()) {
-      if (aside()) continue;
+      if (aside(clause)) continue;
       if (ends_at(at_) && !is_place(match(at_).is)) break;
       idle(clause);
       const Match word = match(at_);
@@ -151,8 +167,9 @@ class ClauseReader : public ClauseNouns {
     joined_ = false;
     if (at_ < words_.size() && !ends_at(at_)) {
       const Match next = match(at_);
+      const bool is_but = next.is == WordIs::kBut && words_[at_].text == "but" && next.length == 1;
       const bool is_known =
-          joins(next.is) || next.is == WordIs::kSpares || next.is == WordIs::kBegins;
+          joins(next.is) || is_but || next.is == WordIs::kSpares || next.is == WordIs::kBegins;
       if (!is_known || next.is == WordIs::kOr) doubt(clause, at_);
     }
     clause.words = shown(from, at_);
@@ -164,19 +181,54 @@ class ClauseReader : public ClauseNouns {
     out_.all.push_back(std::move(clause));
   }
 
-  // "Put the cube, not the can, on the tray".
-  bool aside() {
-    if (match(at_).is != WordIs::kDenies || words_[at_].text != "not") return false;
-    const auto other = noun(at_ + 1);
+  // "Put the cube, not the can, on the tray", "all cubes except the red one".
+  bool aside(Clause& clause) {
+    const Match word = match(at_);
+    const bool is_not = word.is == WordIs::kDenies && words_[at_].text == "not";
+    if (!is_not && word.is != WordIs::kBut) return false;
+    const auto other = but_what(at_ + word.length, clause);
     if (!other || other->is_place) return false;
-    const WordIs next = match(other->end).is;
-    if (!is_place(next) && next != WordIs::kDenies) return false;
     Things of;
     for (const Clause::What& one : other->what) of.insert(one.of.begin(), one.of.end());
+    const std::string& text = words_[at_].text;
+    const bool excepts = text == "except" || (text == "but" && word.length == 1);
+    // "Put the cup on the tray but the can on the plate" goes on.
+    if (excepts && !is_several(clause, of)) return false;
+    const std::size_t end = other->end;
+    const WordIs next = match(end).is;
+    const bool is_end = end == words_.size() || words_[end - 1].ends;
+    if (!is_place(next) && next != WordIs::kDenies && next != WordIs::kBut &&
+        (is_not || !(is_end || joins(next))))
+      return false;
+    if (excepts) {
+      for (Clause::What& one : clause.what)
+        std::erase_if(one.of, [&](ObjectId id) { return of.contains(id); });
+    }
+    clause.spared.insert(of.begin(), of.end());
     out_.said.insert(of.begin(), of.end());
-    out_.left.push_back({shown(at_, other->end), std::move(of), true});
-    at_ = other->end;
+    out_.left.push_back({shown(at_, end), std::move(of), true});
+    at_ = end;
     return true;
+  }
+  static bool is_several(const Clause& clause, const Things& but) {
+    return std::any_of(clause.what.begin(), clause.what.end(), [&](const Clause::What& one) {
+      return (one.is_each || one.is_several) && one.of.size() > but.size() &&
+             std::includes(one.of.begin(), one.of.end(), but.begin(), but.end());
+    });
+  }
+  // A noun, or "the red one" of those that were spoken of.
+  std::optional<Noun> but_what(std::size_t at, const Clause& clause) {
+    if (auto what = noun(at)) return what;
+    while (match(at).is == WordIs::kThe) at += match(at).length;
+    if (at + 1 >= words_.size() || words_[at + 1].text != "one") return std::nullopt;
+    Noun found;
+    found.end = at + 2;
+    for (const Clause::What& one : clause.what) {
+      if (Things of = called_.with(words_[at].text, one.of); !of.empty())
+        found.what.push_back({std::move(of)});
+    }
+    out_.is_pure = false;
+    return found.what.empty() ? std::nullopt : std::optional(std::move(found));
   }
 
   // A clause is not understood, from this word on.
@@ -194,6 +246,14 @@ class ClauseReader : public ClauseNouns {
     for (const Clause::What& one : to->what) out_.said.insert(one.of.begin(), one.of.end());
     if (word.is == WordIs::kFrom) {
       for (const Clause::What& one : to->what) clause.from.insert(one.of.begin(), one.of.end());
+    }
+    if (word.is == WordIs::kFrom) clause.begins_there = words_[at].text != "away";
+    // "Cover the cup with the plate" puts the plate on the cup.
+    if (word.is == WordIs::kWith && covers_ && clause.what.size() == 1 && !clause.goes) {
+      where = clause.what[0].of;
+      clause.what = to->what;
+      clause.lies = Clause::Where::kOn;
+      clause.goes = true;
     }
     if (word.is == WordIs::kFrom || word.is == WordIs::kWith) return true;
     // "Pick up the cup on the plate": which cup. "Take it to the plate": where to.
@@ -218,7 +278,8 @@ class ClauseReader : public ClauseNouns {
   }
 
   Clause::Where lies_as(const Match& word, std::size_t at) const {
-    if (word.is == WordIs::kBeside) return Clause::Where::kBeside;
+    if (word.is == WordIs::kBeside)
+      return words_[at].text == "on" ? Clause::Where::kOnOrBeside : Clause::Where::kBeside;
     constexpr auto kOn =
         std::to_array<std::string_view>({"on", "upon", "atop", "onto", "over", "above"});
     constexpr auto kUnder = std::to_array<std::string_view>({"under", "below"});
@@ -274,6 +335,7 @@ class ClauseReader : public ClauseNouns {
     const std::size_t from = at_;
     Clause clause;
     clause.does = is == WordIs::kOpens ? Clause::Does::kOpens : Clause::Does::kCloses;
+    clause.is_kept = text == "keep";
     clause.what = what->what;
     at_ = what->end + 1;
     finish(std::move(clause), from);
@@ -362,7 +424,13 @@ class ClauseReader : public ClauseNouns {
     out_.is_whole = false;
     const std::size_t from = at_;
     Things of;
-    for (; at_ < words_.size(); ++at_) of.merge(speak(at_));
+    for (; at_ < words_.size(); ++at_) {
+      of.merge(speak(at_));
+      // "Push the cup without lifting it".
+      const bool is_it = match(at_).is == WordIs::kIt && words_[at_].text == "it";
+      if (is_it && !out_.all.empty() && out_.all.back().what.size() == 1)
+        of.insert(out_.all.back().what[0].of.begin(), out_.all.back().what[0].of.end());
+    }
     if (from < at_) out_.left.push_back({shown(from, at_), std::move(of), true});
   }
 
@@ -380,6 +448,7 @@ class ClauseReader : public ClauseNouns {
   std::size_t at_ = 0;
   Things pending_;       // where the next clause goes, said before it
   bool unsure_ = false;  // a place that is no thing was said of the clause that is read
+  bool covers_ = false;  // the clause that is read says what is on top behind "with"
   bool joined_ = false;  // the words before are no part of a clause
   enum class Ordinal : std::uint8_t { kNone, kFirst, kLast } turn_ = Ordinal::kNone;
   Clause::Does last_ = Clause::Does::kOther;

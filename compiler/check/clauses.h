@@ -30,23 +30,28 @@ struct Clause {
   std::vector<What> what;
   Things where;  // where it goes, by all that the words may mean
   // What is said of those places: it lies on or over them, under them, or at their sides; several
-  // of one clause are mixed.
+  // of one clause are mixed. "On the left of" a thing is beside it or on it.
   enum class Where : std::uint8_t {
     kElsewhere,
     kOn,
     kUnder,
     kBeside,
+    kOnOrBeside,
     kMixed
   } lies = Where::kElsewhere;
-  bool goes = false;         // it is said where to, in words that are known
-  bool is_anywhere = false;  // "in a drawer", "on either of the plates"
-  Things from;               // "take the cup off the plate"
-  std::string ground;        // "on the table": the word, of what is no thing
-  std::string repeats;       // "twice"
-  bool certain = true;       // all of its words were understood
-  std::string stopped;       // where not: the word that was not
-  bool denied = false;       // "do not put ..": the first of an instruction, and alone
-  std::string words;         // "put the red block on the tray"
+  bool is_aside() const { return lies == Where::kBeside || lies == Where::kOnOrBeside; }
+  bool goes = false;          // it is said where to, in words that are known
+  bool is_anywhere = false;   // "in a drawer", "on either of the plates"
+  Things from;                // "take the cup off the plate"
+  bool begins_there = false;  // and so it began there: not "away from the plate"
+  Things spared;              // "the cup but not the can"
+  bool is_kept = false;       // "keep the drawer closed"
+  std::string ground;         // "on the table": the word, of what is no thing
+  std::string repeats;        // "twice"
+  bool certain = true;        // all of its words were understood
+  std::string stopped;        // where not: the word that was not
+  bool denied = false;  // "do not put ..": the first of an instruction, and alone; "neither .. nor"
+  std::string words;    // "put the red block on the tray"
 };
 
 // "the red block first", "the red block last", beside clauses or of one.
@@ -59,6 +64,12 @@ struct Rank {
 struct Clauses {
   std::vector<Clause> all;
   std::vector<Rank> ranks;
+  // A thing by a word that is true of others: "the blue cube" of one that is red.
+  struct Mistaken {
+    ObjectId thing = ObjectId::kNone;
+    std::string words, attribute, value;  // "blue cube", "color", "red"
+  };
+  std::vector<Mistaken> mistaken;
   // Words outside of clauses, and of what they speak. `is_spared`: nothing is to be done to it.
   struct Left {
     std::string words;

@@ -130,6 +130,7 @@ class Reader : GoalThings {
       case ExprOp::kRole:
       case ExprOp::kObject:
       case ExprOp::kPart:
+      case ExprOp::kJoint:
         goal_.spoken.merge(things(ref, given));
         break;
       case ExprOp::kVector:
@@ -189,6 +190,18 @@ class Reader : GoalThings {
     }
   }
 
+  // What a call is of, but for the numbers behind it: `by: length = 3cm`.
+  std::vector<Things> of_things(const ExprNode& call, const Given& inner) const {
+    const auto& parameters = called(call).parameters;
+    std::size_t count = std::min({call.args.size(), inner.size(), parameters.size()});
+    const auto is_number = [](TypeKind kind) {
+      return kind == TypeKind::kReal || kind == TypeKind::kVector || kind == TypeKind::kBool;
+    };
+    while (count > 0 && inner[count - 1].empty() && is_number(parameters[count - 1].type.kind))
+      --count;
+    return {inner.begin(), inner.begin() + static_cast<std::ptrdiff_t>(count)};
+  }
+
   // What has to hold for certain.
   void ask(ExprRef ref, const Given& given) {
     if (ref == kNoExpr) return;
@@ -218,9 +231,7 @@ class Reader : GoalThings {
         return;
       case ExprOp::kCall: {
         const Given inner = given_to(node, given);
-        const std::size_t count = std::min(node.args.size(), inner.size());
-        goal_.asked.insert(
-            {node.predicate, {inner.begin(), inner.begin() + static_cast<std::ptrdiff_t>(count)}});
+        goal_.asked.insert({node.predicate, of_things(node, inner)});
         if (is_new(asked_, node, inner)) ask(model_.predicates[node.predicate].body, inner);
         return;
       }

@@ -2,6 +2,7 @@
 // certain; where a goal leaves something open, nothing is said of it here.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -42,8 +43,8 @@ struct Goal {
   std::map<std::pair<ObjectId, ObjectId>, Bearing> bearings;
   // What metrics beside success measure of one another.
   std::set<std::pair<ObjectId, ObjectId>> measured_beside;
-  // Which way it wants the joint that moves a part: at least so far from where it is closed, at most
-  // so far, or otherwise. Of a joint that moves no declared part: `moves_unnamed`.
+  // Which way it wants the joint that moves a part: at least so far from where it is closed, at
+  // most so far, or otherwise. Of a joint that moves no declared part: `moves_unnamed`.
   struct Way {
     bool opens = false, closes = false, other = false;
   };
@@ -59,6 +60,11 @@ struct Goal {
   bool forgets = false;
   // Of two things that the first is higher, whatever their sizes.
   std::set<std::pair<ObjectId, ObjectId>> above;
+  // What has to be higher than it began, and what elsewhere than it began, for certain.
+  Things raised, shifted;
+  // Which way a thing has to have gone, as the first camera sees it.
+  enum class Went : std::uint8_t { kLeft, kRight, kNearer, kFarther };
+  std::set<std::pair<ObjectId, Went>> went;
 };
 
 // In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.

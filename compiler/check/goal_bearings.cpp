@@ -21,6 +21,19 @@ class BearingReader : GoalThings {
   void condition(ExprRef ref, const Given& given, Sense sense) {
     if (ref == kNoExpr) return;
     const ExprNode& node = at(ref);
+    // Of several ways that will do none is certain.
+    const bool was_certain = certain_;
+    const bool is_all = node.op == ExprOp::kAnd || node.op == ExprOp::kAll;
+    const bool is_any = node.op == ExprOp::kOr || node.op == ExprOp::kAny || node.op == ExprOp::kNo;
+    if (is_any ? sense != (node.op == ExprOp::kNo ? Sense::kFor : Sense::kAgainst)
+               : is_all && sense != Sense::kFor)
+      certain_ = false;
+    look(node, given, sense);
+    certain_ = was_certain;
+  }
+
+ private:
+  void look(const ExprNode& node, const Given& given, Sense sense) {
     switch (node.op) {
       case ExprOp::kNot:
         condition(node.args[0], given, against(sense));
@@ -52,7 +65,6 @@ class BearingReader : GoalThings {
     }
   }
 
- private:
   // One after the other where it is known who they are: what holds of each holds of no two of them.
   void each(const ExprNode& node, const Given& given, Sense sense) {
     Given inner = given;
@@ -96,7 +108,8 @@ class BearingReader : GoalThings {
   template <typename Look>
   void call(const ExprNode& node, const Given& given, Sense sense, Look look) {
     const Given inner = given_to(node, given);
-    if (called_.insert({node.predicate, inner, sense}).second) look(called(node).body, inner);
+    if (called_.insert({node.predicate, inner, sense, certain_}).second)
+      look(called(node).body, inner);
   }
 
   // `a < b` is so where a is small and b is large.
@@ -109,8 +122,11 @@ class BearingReader : GoalThings {
         goal_.above.insert({high, low});
     }
     decided_.clear();
+    grows_now_.clear();
+    shrinks_then_.clear();
     number(node.args[0], given, sense);
     number(node.args[1], given, against(sense));
+    if (certain_ && sense == Sense::kFor) take_changes();
     Things all = things(node.args[0], given);
     all.merge(things(node.args[1], given));
     for (auto a = all.begin(); a != all.end(); ++a) {
@@ -121,6 +137,37 @@ class BearingReader : GoalThings {
         bearing.asked = bearing.asked || sense != Sense::kAgainst;
       }
     }
+  }
+
+  // What is other than it began.
+  void take_changes() {
+    for (const auto& one : grows_now_) {
+      if (!shrinks_then_.contains(one)) continue;
+      const auto& [measure, thing, grows] = one;
+      using Went = Goal::Went;
+      if (measure == Measure::kHeight && grows) goal_.raised.insert(thing);
+      if (measure == Measure::kViewX)
+        goal_.went.insert({thing, grows ? Went::kRight : Went::kLeft});
+      if (measure == Measure::kViewY)
+        goal_.went.insert({thing, grows ? Went::kNearer : Went::kFarther});
+    }
+  }
+  // A coordinate of one thing, as it is or as it began.
+  void note_change(Measure measure, ExprRef point, const Given& given, Sense small) {
+    const Things of = things(point, given);
+    if (of.size() != 1 || small == Sense::kEither) return;
+    const bool is_start = at(point).op == ExprOp::kMeasure && at(point).measure == Measure::kStart;
+    const bool grows = (small == Sense::kAgainst) != is_start;
+    (is_start ? shrinks_then_ : grows_now_).insert({measure, *of.begin(), grows});
+  }
+  void note_distance(const ExprNode& node, const Given& given, Sense small) {
+    const auto is_start = [&](ExprRef point) {
+      return at(point).op == ExprOp::kMeasure && at(point).measure == Measure::kStart;
+    };
+    const Things a = things(node.args[0], given), b = things(node.args[1], given);
+    if (certain_ && small == Sense::kAgainst && a.size() == 1 && a == b &&
+        is_start(node.args[0]) != is_start(node.args[1]))
+      goal_.shifted.insert(*a.begin());
   }
 
   // Where a number is the height of one thing and nothing else.
@@ -166,8 +213,22 @@ class BearingReader : GoalThings {
 
   void measure(const ExprNode& node, const Given& given, Sense small) {
     switch (node.measure) {
+      case Measure::kHeight:
+      case Measure::kZ:
+        note_change(Measure::kHeight, node.args[0], given, small);
+        return;
+      case Measure::kViewX:
+      case Measure::kViewY:
+        note_change(node.measure, node.args[0], given, small);
+        return;
+      case Measure::kMovedXy:
+        if (const Things of = things(node.args[0], given);
+            certain_ && small == Sense::kAgainst && is_asked_ && of.size() == 1)
+          goal_.shifted.insert(*of.begin());
+        return;
       case Measure::kDistance:
       case Measure::kDistanceXy:
+        note_distance(node, given, small);
         pairs(things(node.args[0], given), things(node.args[1], given), small);
         return;
       case Measure::kImpulse:
@@ -219,9 +280,13 @@ class BearingReader : GoalThings {
   }
 
   Goal& goal_;
-  bool is_asked_ = true;                                    // what is looked at has to hold
-  std::set<std::tuple<PredicateId, Given, Sense>> called_;  // looked at
-  std::set<std::pair<ObjectId, ObjectId>> decided_;         // by the comparison that is looked at
+  bool certain_ = true;  // no other way will do
+  // Of one comparison: which numbers of a thing as it is are to be large, and of it as it began to
+  // be small; or the other way round.
+  std::set<std::tuple<Measure, ObjectId, bool>> grows_now_, shrinks_then_;
+  bool is_asked_ = true;                                          // what is looked at has to hold
+  std::set<std::tuple<PredicateId, Given, Sense, bool>> called_;  // looked at
+  std::set<std::pair<ObjectId, ObjectId>> decided_;  // by the comparison that is looked at
 };
 
 }  // namespace

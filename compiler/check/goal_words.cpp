@@ -2,7 +2,9 @@
 #include "compiler/check/goal_words.h"
 
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "compiler/check/check.h"
 #include "compiler/check/clause_goal.h"
@@ -53,13 +55,31 @@ bool says_other_goal(const Model& model, const Task& task, Told& told, Reporter&
   return false;
 }
 
+using Mistaken = std::set<std::pair<TemplateId, ObjectId>>;  // of which it was said
+
+// "the blue cube" of a red one, once for an instruction.
+void says_other_value(const Model& model, const Task& task, Told& told, Mistaken& said,
+                      Reporter& reporter) {
+  for (const Clauses::Mistaken& one : told.clauses().mistaken) {
+    if (!said.insert({task.say, one.thing}).second) continue;
+    const Object& object = model.objects[one.thing];
+    report_of(reporter, Code::P1510, task, task.say_span,
+              "`" + task.name + "` calls `" + object.name + "` \"" + one.words + "\", and its `" +
+                  one.attribute + "` is " + one.value)
+        .label(object.span, "declared here")
+        .severity = Severity::kWarning;
+  }
+}
+
 // "put the cube on the towel" of which success is that it lies on the plate.
 bool says_other_clause(const Model& model, const Task& task, Told& told, Shared& shared,
-                       Reporter& reporter) {
+                       Mistaken& mistaken, bool is_whole, Reporter& reporter) {
   Shared::ClauseKey key = shared.clause_key(task);
   if (shared.has_right_clauses(key)) return false;
+  says_other_value(model, task, told, mistaken, reporter);
   const auto lack = clause_lack(model, task, told.clauses(), told.goal());
   if (!lack) {
+    if (is_whole && moves_unsaid(model, task, told, reporter)) return true;
     if (told.clauses().is_pure) shared.keep_right_clauses(std::move(key));
     return false;
   }
@@ -73,6 +93,7 @@ bool says_other_clause(const Model& model, const Task& task, Told& told, Shared&
 void check_goal_words(const Model& model, Reporter& reporter) {
   AskedTwice asks_twice(model);
   Shared shared(model);
+  Mistaken mistaken;
   const auto check = [&](const Task& task, bool is_last, bool is_whole) {
     if (is_control(model.templates[task.say])) return;
     const About about(reporter, task.decl_span);
@@ -84,7 +105,8 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
       return;
     // What is done before another sentence comes need not be so at the end.
-    if (is_last && says_other_clause(model, task, told, shared, reporter)) return;
+    if (is_last && says_other_clause(model, task, told, shared, mistaken, is_whole, reporter))
+      return;
     // What one of several sentences leaves out another may say.
     if (is_whole && asks_twice(task)) leaves_one_out(model, task, told, reporter);
   };

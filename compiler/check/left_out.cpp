@@ -69,6 +69,21 @@ bool AskedTwice::look(ExprRef ref, std::set<PredicateId>& called) const {
                                    [&](ExprRef arg) { return look(arg, called); });
 }
 
+// "put A on the plate" of which success is that C has moved as well.
+bool moves_unsaid(const Model& model, const Task& task, Told& told, Reporter& reporter) {
+  if (told.goal().shifted.empty() || !told.clauses().is_whole || told.clauses().all.empty())
+    return false;
+  for (const ObjectId thing : told.goal().shifted) {
+    if (may_speak_of(model, told.said(), told.clauses(), thing)) continue;
+    report_of(reporter, Code::P1202, task, task.say_span,
+              "success of `" + task.name + "` wants `" + model.objects[thing].name +
+                  "` to be elsewhere than it began, of which nothing is said")
+        .label(model.metrics[task.metrics].span, "judged by these");
+    return true;
+  }
+  return false;
+}
+
 bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& reporter) {
   const auto is_given = [](const Goal::Asked& asked, ObjectId thing) {
     return std::any_of(asked.of.begin() + 1, asked.of.end(),

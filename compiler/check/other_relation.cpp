@@ -36,7 +36,7 @@ std::string other_relation(const Model& model, const std::set<PredicateId>& judg
 std::optional<std::pair<ObjectId, ObjectId>> turned_round(Told& told, PredicateId relation) {
   if (told.model().predicates[relation].objects != 2) return std::nullopt;
   for (const Clause& clause : told.clauses().all) {
-    if (!clause.certain || clause.denied || clause.lies != Clause::Where::kBeside ||
+    if (!clause.certain || clause.denied || !clause.is_aside() ||
         clause.what.size() != 1 || clause.what[0].of.size() != 1 || clause.where.size() != 1)
       continue;
     const Things& thing = clause.what[0].of;

@@ -23,6 +23,9 @@ bool says_other_part(const Model& model, const Task& task, Shared& shared, Repor
 // things each, is said of both or of none.
 bool leaves_one_out(const Model& model, const Task& task, Told& told, Reporter& reporter);
 
+// "put A on the plate" of which success wants C to have moved as well.
+bool moves_unsaid(const Model& model, const Task& task, Told& told, Reporter& reporter);
+
 // Whether some predicate may be asked of two things, before a task says of which.
 class AskedTwice {
  public:

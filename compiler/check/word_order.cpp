@@ -53,11 +53,20 @@ bool is_beside(Told& told, ObjectId a, ObjectId b) {
                       });
 }
 
+// Whether the first has to come before the other, or before one that has to.
+bool comes_before(Told& told, ObjectId a, ObjectId b) {
+  Things reached = {a};
+  for (bool is_more = true; is_more && !reached.contains(b);) {
+    is_more = false;
+    for (const auto& [first, second] : told.goal().order) {
+      if (!std::ranges::any_of(first, [&](ObjectId id) { return reached.contains(id); })) continue;
+      for (const ObjectId id : second) is_more = reached.insert(id).second || is_more;
+    }
+  }
+  return reached.contains(b);
+}
 bool is_ordered(Told& told, ObjectId a, ObjectId b) {
-  return std::any_of(told.goal().order.begin(), told.goal().order.end(), [&](const auto& order) {
-    return (order.first.contains(a) && order.second.contains(b)) ||
-           (order.first.contains(b) && order.second.contains(a));
-  });
+  return comes_before(told, a, b) || comes_before(told, b, a);
 }
 
 // Two objects that are said on both sides of the word, of each of which something is asked that

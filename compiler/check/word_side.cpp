@@ -22,9 +22,29 @@ bool follows_place(Told& told, std::size_t at) {
   return false;
 }
 
+// "Move the cube to the left" of which success is that it went to the right.
+std::optional<std::string> other_way(Told& told, const GoalWords& one) {
+  using Went = Goal::Went;
+  const bool is_left = one.words == "to the left";
+  if (!is_left && one.words != "to the right") return std::nullopt;
+  const auto at = told.said().find(one.words);
+  const auto& words = told.said().words;
+  if (!at || (*at + 3 < words.size() && words[*at + 3].text == "of")) return std::nullopt;
+  const auto& went = told.goal().went;
+  for (const auto& [thing, way] : went) {
+    if (way != (is_left ? Went::kRight : Went::kLeft) ||
+        went.contains({thing, is_left ? Went::kLeft : Went::kRight}) || went.size() != 1)
+      continue;
+    return "success wants " + told.name_of(Things{thing}) + " to be farther to the " +
+           (is_left ? "right" : "left") + " than it began";
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> side_word_lack(Told& told, const GoalWords& one) {
+  if (auto lack = other_way(told, one)) return lack;
   if (told.goal().tells_sides) return std::nullopt;
   const std::size_t length = folded_words(one.words).size();
   for (auto at = told.said().find(one.words); at; at = told.said().find(one.words, *at + 1)) {

@@ -13,7 +13,8 @@ TEST_CASE("the other one is not what was spoken of before") {
 }
 
 TEST_CASE("how a thing is taken says nothing of what is done at the end") {
-  CHECK(told_of_one("over(source, target)", "put the cube on the tray, lifting it carefully") == "");
+  CHECK(told_of_one("over(source, target)", "put the cube on the tray, lifting it carefully") ==
+        "");
   CHECK(told_of_one("over(source, target)", "put the cube on the tray. grasp it gently.") == "");
 }
 
@@ -38,21 +39,82 @@ TEST_CASE("on is said of a relation that is called so") {
 }
 
 TEST_CASE("what is lifted off a thing is above it") {
-  CHECK(told_of_one("(distance_xy(source, target) < 5cm and height(source) > height(target) + 10cm)",
-                    "lift the cube off the tray") == "");
+  CHECK(
+      told_of_one("(distance_xy(source, target) < 5cm and height(source) > height(target) + 10cm)",
+                  "lift the cube off the tray", kLying) == "");
 }
 
 TEST_CASE("all drawers are those of the scene that a task is in") {
   const std::string text =
-      analyze_with_suite(std::string(kChest) + kPlaces +
-                         "fixture other like chest { at (30cm, 30cm, 85cm) }\n"
-                         "scene elsewhere like room { fixture other }\n"
-                         "metrics m { success = at end (all p in parts: shut(p)) }\n"
-                         "layout one { place source at (0cm, -20cm); place target at (20cm, -20cm); "
-                         "orient by rest; drop 10cm settle 0.5s }\n"
-                         "task t like base { scene room; layout one; source cube; target tray; "
-                         "metrics m; say \"close the drawer and the door\" }\n"
-                         "task u like t { scene elsewhere }\n")
+      analyze_with_suite(
+          std::string(kChest) + kPlaces +
+          "fixture other like chest { at (30cm, 30cm, 85cm) }\n"
+          "scene elsewhere like room { fixture other }\n"
+          "metrics m { success = at end (all p in parts: shut(p)) }\n"
+          "layout one { place source at (0cm, -20cm); place target at (20cm, -20cm); "
+          "orient by rest; drop 10cm settle 0.5s }\n"
+          "task t like base { scene room; layout one; source cube; target tray; "
+          "metrics m; say \"close the drawer and the door\" }\n"
+          "task u like t { scene elsewhere }\n")
           ->said();
   CHECK_MESSAGE(text.find("P1202") == std::string::npos, text);
+}
+
+TEST_CASE("on the left of a thing is beside it or on it") {
+  CHECK(told_of_one("(over(source, target) and view_x(source) < view_x(target))",
+                    "put the cube on the left of the tray") == "");
+  CHECK(told_of_one("view_x(source) < view_x(target) - 2cm",
+                    "put the cube on the left of the tray") == "");
+}
+
+TEST_CASE("what is put on a hook or a peg need not be higher") {
+  const std::string hangs =
+      "(distance_xy(source, target) < 5cm and height(source) < height(target))";
+  CHECK(told_of_one(hangs, "put the cube on the tray") == "");
+  CHECK(told_of_one(hangs, "hang the cube on the tray") == "");
+}
+
+TEST_CASE("what is kept as it is may be the matter of another metric") {
+  const std::string words = "put {the source} on {the target} and keep the drawer closed";
+  CHECK(told_of_chest("over(source, target)\n opened_it = once travel(chest.slide) > 2cm", words) ==
+        "");
+  CHECK(told_of_chest("(over(source, target) and shut(chest.drawer))", words) == "");
+  CHECK(told_of_chest("over(source, target)", words) ==
+        "error[P1202]: `t` says \"keep the drawer closed\" and no metric measures anything of "
+        "`chest.drawer`");
+  CHECK(told_of_chest("(over(source, target) and far_open(chest.drawer))", words) ==
+        "error[P1202]: `t` says \"keep the drawer closed\" and success is that `chest.drawer` has "
+        "moved at least so far");
+}
+
+TEST_CASE("what is spared, counted or said to be left out is as it is said") {
+  CHECK(told_of_two("(over(source, target) and not over(helper, target))",
+                    "put the cube but not the orange on the tray") == "");
+  CHECK(told_of_two("(not over(source, target) and not over(helper, target))",
+                    "put neither the cube nor the orange on the tray") == "");
+  const std::string three = "green_cube, yellow_cube, red_cube";
+  CHECK(told_of_three("put the three cubes on the tray", three) == "");
+  CHECK(told_of_three("put the pair of cubes on the tray", "green_cube, red_cube") == "");
+  CHECK(told_of_one("any g in {source, target}: displaced(g)", "push the cube or the tray") == "");
+  const std::string alone = "(over(source, target) and undisturbed(helper))";
+  CHECK(told_of_two(alone, "put the cube rather than the orange on the tray") == "");
+  CHECK(told_of_two(alone, "put the cube, but not the orange, on the tray") == "");
+  CHECK(told_of_two(alone, "put the cube on the tray but do not move the orange") == "");
+}
+
+TEST_CASE("what is lifted, pushed or moved aside is so in success") {
+  CHECK(told_of_one("lifted(source)", "lift the cube") == "");
+  CHECK(told_of_one("lifted(source)", "hold the cube up") == "");
+  CHECK(told_of_one("lifted(source)", "pick up the cube") == "");
+  CHECK(told_of_one("once lifted(source)", "lift the cube and put it back down") == "");
+  CHECK(told_of_one("displaced(source)", "push the cube") == "");
+  CHECK(told_of_one("view_x(source) < view_x(start(source)) - 3cm", "move the cube to the left") ==
+        "");
+  CHECK(told_of_one("(over(source, target) and displaced(towel))",
+                    "push the towel aside and put the cube on the tray") == "");
+  CHECK(told_of_one("(over(source, target) and undisturbed(towel))", "put the cube on the tray") ==
+        "");
+  CHECK(told_of_one("(over(source, target) and (displaced(towel) or lifted(source)))",
+                    "put the cube on the tray") == "");
+  CHECK(told_of_one("x(source) > 10cm", "put the cube on the tray") == "");
 }

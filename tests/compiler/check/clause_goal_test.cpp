@@ -34,7 +34,7 @@ TEST_CASE("what goes where is what success asks of the two") {
                     "put the cube on the towel, not on {avoid the target}") == wrong);
   // It may be either that goes there, and what is not understood says nothing.
   CHECK(told_of_one("over(source, target)", "put the cube beside the towel on the tray") == "");
-  CHECK(told_of_one("over(source, target)", "take the cube from the towel to the tray") == "");
+  CHECK(told_of_one("over(source, target)", "take the cube away from the towel to the tray") == "");
   CHECK(told_of_one("over(source, target)",
                     "put the cube on the fringe of the towel on the tray") == "");
 }
@@ -44,10 +44,11 @@ TEST_CASE("a clause without a verb may stand behind any sign") {
     CAPTURE(sign);
     CHECK(told_of_two("(over(source, target) and over(helper, towel))",
                       "put the cube on the tray" + sign + " the orange on the towel") == "");
-    CHECK(told_of_two("(over(source, target) and over(helper, towel))",
-                      "put the cube on the tray" + sign + " the orange on the tray") ==
-          "error[P1202]: `t` says \"the orange on the tray\" and success asks `over` of `orange` and "
-          "`towel`");
+    CHECK(
+        told_of_two("(over(source, target) and over(helper, towel))",
+                    "put the cube on the tray" + sign + " the orange on the tray") ==
+        "error[P1202]: `t` says \"the orange on the tray\" and success asks `over` of `orange` and "
+        "`towel`");
   }
   CHECK(told_of_one("over(source, target)", "put the cube on it, the tray on the table") == "");
   CHECK(told_of_one("over(source, target)", "put cube, the tray on cube") ==
@@ -60,13 +61,13 @@ TEST_CASE("what is put somewhere is something that success speaks of") {
                     "put {the source} on {the target} and {the helper} on the towel") ==
         "error[P1202]: `t` says \"the orange on the towel\" and success asks nothing of `orange`");
   CHECK(told_of_chest("far_open(chest.drawer)",
-                      "open the drawer, take {the source} out and put it on {the target}") ==
+                      "open the drawer, take {the source} and put it on {the target}") ==
         "error[P1202]: `t` says \"put it on the tray\" and success asks nothing of `cube`");
   CHECK(told_of_chest("far_open(chest.drawer)",
                       "open the drawer, take out what is in it and put it on {the target}, "
                       "{the source}") == "");
   CHECK(told_of_chest("(far_open(chest.drawer) and over(source, target))",
-                      "open the drawer, take {the source} out and put it on {the target}") == "");
+                      "open the drawer, take {the source} and put it on {the target}") == "");
 }
 
 TEST_CASE("what else must not be touched hides nothing of what goes where") {
@@ -192,7 +193,8 @@ TEST_CASE("what goes somewhere is not to be elsewhere") {
   CHECK(told_of_one("(not over(source, target))", "put {the source} on {the target}") ==
         "error[P1202]: `t` says \"put the cube on the tray\" and success wants `cube` not to be "
         "there");
-  CHECK(told_of_one("(not over(source, target))", "take {the source} off {the target}") == "");
+  CHECK(told_of_one("(not over(source, target))", "take {the source} off {the target}", kLying) ==
+        "");
   CHECK(told_of_one("distance(source, target) > 10cm", "put {the source} away from {the target}") ==
         "");
   CHECK(told_of_one("(not once not over(source, target))", "put {the source} on {the target}") ==
