@@ -67,7 +67,7 @@ double width(const scene::CollisionShape& shape, const Quat& turn) {
 
 struct Hold {
   bool held = false;
-  bool wedged = false;  // by the limits of the fingers, which then are no grasp: it creeps
+  bool wedged = false;        // by the limits of the fingers, which then are no grasp: it creeps
   double slip = 0, turn = 0;  // m, rad
 };
 
