@@ -378,6 +378,7 @@ class Builder {
     made.base_color_image = image;
     made.roughness = 1;
     made.metallic = 0;
+    made.opacity = rgba[3];
     document_.materials.push_back(std::move(made));
     return found->second;
   }
@@ -499,13 +500,15 @@ Result<std::string> seen_link(const mjcf::Model& model, const MujocoLink& link,
     const Geom& geom = *placed.it;
     if (!groups.contains(geom.group) || geom.rgba[3] == 0) continue;
     const std::string where = model.where(geom.at) + ": ";
-    constexpr double kDrawn = 0.5;
-    if (geom.rgba[3] < kDrawn) {
+    // What is seen through is drawn into some of a pixel's four samples.
+    const double quarters = std::round(4 * geom.rgba[3]);
+    if (quarters == 0) {
       notes.push_back(fmt::format("{}a geom of opacity {:g} is not drawn", where, geom.rgba[3]));
       continue;
     }
-    if (geom.rgba[3] < 1)
-      notes.push_back(fmt::format("{}a geom of opacity {:g} is drawn solid", where, geom.rgba[3]));
+    if (quarters != 4 * geom.rgba[3])
+      notes.push_back(fmt::format("{}a geom of opacity {:g} is drawn as one of {:g}", where,
+                                  geom.rgba[3], quarters / 4));
     if (geom.shape == Shape::kPlane && (geom.size[0] == 0 || geom.size[1] == 0)) {
       notes.push_back(where + "a plane without end is not drawn");
       continue;

@@ -75,7 +75,7 @@ Result<FidelityRow> torques_row(Imported& imported, const Records& records) {
     const std::string file = "reference/osc_unit_" + task.key() + ".json";
     if (!records.has(file)) continue;
     PROBE_ASSIGN(const Json all, records.json(file));
-    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), false));
+    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), {.pictures = false}));
     const auto* law = std::get_if<robot::OscPose>(&stage->robot().law);
     if (law == nullptr)
       return Failure{Fault::kUsage, "the import's robot is not under osc_pose", task.key()};
@@ -143,7 +143,7 @@ Result<Followed> follow(Imported& imported, const Records& records, const Record
   PROBE_ASSIGN(const std::string text, records.text(file));
   PROBE_ASSIGN(const RecordedTable table, read_table(text, file));
   PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite));
-  PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), false));
+  PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), {.pictures = false}));
   const auto* law = std::get_if<robot::OscPose>(&stage->robot().law);
   if (law == nullptr)
     return Failure{Fault::kUsage, "the import's robot is not under osc_pose", task.key()};

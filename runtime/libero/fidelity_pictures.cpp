@@ -51,7 +51,7 @@ Result<FidelityRow> pictures_row(Imported& imported, const Records& records,
   if (error) return Failure{Fault::kIo, "cannot make this folder: " + error.message(), sheets};
   for (const RecordedTask& task : records.tasks()) {
     if (!records.has("reference/" + task.key() + "_t10_agentview.png")) continue;
-    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), true));
+    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), {}));
     PROBE_TRY(stage->reset(0));
     PROBE_ASSIGN(const policy::Observation seen, stage->observe());
     for (const policy::CameraImage& view : seen.cameras) {

@@ -90,7 +90,7 @@ Result<FidelityRow> settling_row(Imported& imported, const Records& records, std
     if (states.empty()) continue;
     PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite));
     PROBE_ASSIGN(const auto assets, imported.assets(task.suite, task.name()));
-    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), false));
+    PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), {.pictures = false}));
     PROBE_ASSIGN(const std::vector<std::size_t> places, places_of(*stage, task));
     for (std::size_t i = 0; i < std::min(states.size(), starts); ++i, ++all) {
       PROBE_TRY(stage->reset(static_cast<std::uint32_t>(i)));

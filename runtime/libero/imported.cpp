@@ -37,11 +37,11 @@ Result<std::shared_ptr<const stage::SharedAssets>> Imported::assets(std::string_
 }
 
 Result<std::unique_ptr<stage::Stage>> Imported::stage(std::string_view suite, std::string_view task,
-                                                      bool pictures) {
+                                                      const stage::StageOptions& options) {
   PROBE_ASSIGN(const plan::Plan* of, plan(suite));
   PROBE_ASSIGN(const std::uint32_t index, find(*of, suite, task));
   PROBE_ASSIGN(const auto loaded, assets(suite, task));
-  return stage::Stage::create(*of, index, loaded, {{}, pictures});
+  return stage::Stage::create(*of, index, loaded, options);
 }
 
 }  // namespace probe::libero

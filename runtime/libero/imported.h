@@ -25,7 +25,7 @@ class Imported {
   Result<std::shared_ptr<const stage::SharedAssets>> assets(std::string_view suite,
                                                             std::string_view task);
   Result<std::unique_ptr<stage::Stage>> stage(std::string_view suite, std::string_view task,
-                                              bool pictures);
+                                              const stage::StageOptions& options);
 
  private:
   Result<std::uint32_t> find(const plan::Plan& plan, std::string_view suite,

@@ -40,6 +40,18 @@ TriangleData make_triangle(const scene::MeshPart& part, std::size_t first) {
   return t;
 }
 
+// What covers less than half shows nothing here: a ray meets a surface or does not. A mesh of such
+// parts alone is shown whole.
+std::vector<bool> shown_parts(const scene::Mesh& mesh) {
+  std::vector<bool> shown;
+  for (const scene::MeshPart& part : mesh.parts) {
+    const auto of = static_cast<std::size_t>(part.material);
+    shown.push_back(of >= mesh.materials.size() || mesh.materials[of].opacity >= 0.5f);
+  }
+  if (std::ranges::find(shown, true) == shown.end()) shown.assign(shown.size(), true);
+  return shown;
+}
+
 }  // namespace
 
 Status check_texture(const scene::Mesh& mesh, int index) {
@@ -94,6 +106,7 @@ Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::build(
   rtcSetSceneBuildQuality(geometry->scene.get(), RTC_BUILD_QUALITY_HIGH);
 
   std::size_t triangles = 0;
+  const std::vector<bool> shown = shown_parts(*mesh);
   // Embree keeps pointers into the parts, so the vector must not move afterwards.
   geometry->parts.resize(mesh->parts.size());
   for (std::size_t p = 0; p < mesh->parts.size(); ++p) {
@@ -103,6 +116,7 @@ Result<std::shared_ptr<const MeshGeometry>> MeshGeometry::build(
     part.material = mesh->materials[static_cast<std::size_t>(source.material)];
     PROBE_TRY(check_texture(*mesh, part.material.base_color_texture));
     PROBE_TRY(check_texture(*mesh, part.material.emission_texture));
+    if (!shown[p]) continue;
     if (part.material.base_color_texture >= 0) {
       part.base_color = &mesh->textures[static_cast<std::size_t>(part.material.base_color_texture)];
     }

@@ -339,12 +339,15 @@ void PlacedMeshes::draw_all(SampleBuffer& out) {
 
 void PlacedMeshes::draw_part(const PlacedPart& placed, SampleBuffer& out, RowSpans* spans) const {
   const Instance& instance = instances_[placed.instance];
-  if (placed.part->indices.empty() || is_outside(instance, placed.part->around)) return;
-  const auto& clusters = placed.part->clusters.clusters;
+  const VertexMesh::Part& part = *placed.part;
+  if (part.indices.empty() || part.samples == 0 || is_outside(instance, part.around)) return;
+  out.take(part.samples);
+  const auto& clusters = part.clusters.clusters;
   for (const MeshClusters::Cluster& cluster : clusters) {
     if (clusters.size() > 1 && is_outside(instance, cluster.around)) continue;
     draw_cluster(instance, placed, cluster, out, spans);
   }
+  out.take(4);
 }
 
 void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& placed,

@@ -48,6 +48,9 @@ inline void put(const Ints& inside, const Floats& nearness, std::int32_t id, flo
   std::memcpy(ids, &is, sizeof is);
 }
 
+// Which of a pixel's samples are drawn into.
+inline Ints first_samples(int count) { return Ints{0, 1, 2, 3} < Ints{} + count; }
+
 // How near the farthest samples of tiles of 2^shift pixels a side are.
 struct Farthest {
   const float* tile;
@@ -59,11 +62,12 @@ constexpr double kBehind = 1.0001;
 
 // A triangle of at most 64 pixels a side: everything in 32 bits.
 PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in,
-                             const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
-                             std::uint32_t* ids) {
+                             const SampleGrid& grid, int samples, std::int32_t id, int stride,
+                             float* nearness, std::uint32_t* ids) {
   Ints across, down;
   std::memcpy(&across, grid.across.data(), sizeof across);
   std::memcpy(&down, grid.down.data(), sizeof down);
+  const Ints taken = first_samples(samples);
   int x[3], y[3];
   for (int i = 0; i < 3; ++i) {
     x[i] = c[i].x - in.left * kSubpixels;
@@ -121,7 +125,7 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
         const Floats here = __builtin_convertvector(e0, Floats) * share[0] +
                             __builtin_convertvector(e1, Floats) * share[1] +
                             __builtin_convertvector(e2, Floats) * share[2];
-        put(outside >= 0, here, id, nearness + at, ids + at);
+        put((outside >= 0) & taken, here, id, nearness + at, ids + at);
       }
       e0 += along_x[0];
       e1 += along_x[1];
@@ -135,11 +139,12 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
 
 // Any triangle: edges in doubles, which hold these whole numbers exactly.
 PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in,
-                             const SampleGrid& grid, std::int32_t id, int stride, float* nearness,
-                             std::uint32_t* ids, const Farthest& behind) {
+                             const SampleGrid& grid, int samples, std::int32_t id, int stride,
+                             float* nearness, std::uint32_t* ids, const Farthest& behind) {
   Ints across, down;
   std::memcpy(&across, grid.across.data(), sizeof across);
   std::memcpy(&down, grid.down.data(), sizeof down);
+  const Ints taken = first_samples(samples);
   const Doubles fx = __builtin_convertvector(__builtin_convertvector(across, Floats), Doubles);
   const Doubles fy = __builtin_convertvector(__builtin_convertvector(down, Floats), Doubles);
   double along_x[3], along_y[3], constant[3];
@@ -204,7 +209,7 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
       }
       for (; px < next; ++px, at += 4) {
         const Longs wide = (e0 >= 0.0) & (e1 >= 0.0) & (e2 >= 0.0);
-        const Ints inside = __builtin_convertvector(wide, Ints);
+        const Ints inside = __builtin_convertvector(wide, Ints) & taken;
         if (any(inside)) put(inside, static_cast<float>(here) + lean, id, nearness + at, ids + at);
         e0 += step0;
         e1 += step1;
@@ -287,11 +292,11 @@ void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnC
   if (is_looked_at_) note(in.left, in.right, in.top, in.bottom);
   constexpr int kSmall = 64;
   if (x1 - x0 < kSmall && y1 - y0 < kSmall) {
-    draw_small(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
-               id_.data());
+    draw_small(corners, -area, in, grid_, taken_, static_cast<std::int32_t>(id), width_,
+               nearness_.data(), id_.data());
   } else {
-    draw_large(corners, -area, in, grid_, static_cast<std::int32_t>(id), width_, nearness_.data(),
-               id_.data(), {farthest_.data(), tiles_across_, kTileShift});
+    draw_large(corners, -area, in, grid_, taken_, static_cast<std::int32_t>(id), width_,
+               nearness_.data(), id_.data(), {farthest_.data(), tiles_across_, kTileShift});
   }
 }
 

@@ -32,6 +32,8 @@ class SampleBuffer {
   void clear();
   // Columns and rows to the last ones too.
   void clear(int left, int right, int top, int bottom);
+  // Of each pixel's samples the first so many alone, 1 to 4, are drawn into from now on.
+  void take(int samples) { taken_ = samples; }
   // The samples that are in the triangle and nearer than what is there become `id`, from 1 on and
   // below 2^31. Corners lie within 2^27 subpixels. A face whose corners turn against the clock as
   // seen is a front; the back of one shows nothing.
@@ -39,6 +41,7 @@ class SampleBuffer {
   // One sample, numbered (y width + x) 4 + which, that a triangle holds. `note` says where such
   // are.
   void put(std::size_t sample, float nearness, std::uint32_t id) {
+    if (static_cast<int>(sample % 4) >= taken_) return;
     float& near = nearness_[sample];
     std::uint32_t& shown = id_[sample];
     const bool passes = nearness > near || (nearness == near && id >= shown);
@@ -73,6 +76,7 @@ class SampleBuffer {
   void forget(int left, int right, int top, int bottom);
 
   int width_ = 0, height_ = 0, tiles_across_ = 0;
+  int taken_ = 4;
   std::vector<float> farthest_;        // by tile
   std::vector<std::uint8_t> changed_;  // since it was looked at
   bool is_looked_at_ = false;          // any

@@ -77,7 +77,9 @@ Result<std::shared_ptr<const VertexMesh>> VertexMesh::build(
     } else {
       part.material.color = display(material.base_color);
     }
-    if (material.metallic > 0 && corners > 0 && is_flat(part)) part.mirror = material.metallic;
+    part.samples = static_cast<int>(std::lround(4 * std::clamp(material.opacity, 0.0f, 1.0f)));
+    if (material.metallic > 0 && part.samples == 4 && corners > 0 && is_flat(part))
+      part.mirror = material.metallic;
     made->parts.push_back(std::move(part));
   }
   made->mesh = std::move(mesh);

@@ -31,6 +31,7 @@ struct VertexMesh {
     VertexMaterial material;
     const MipChain* texture = nullptr;
     float mirror = 0;  // share of what a flat metal shows of what is before it
+    int samples = 4;   // of the four of a pixel that it may have: fewer where it is seen through
   };
   std::shared_ptr<const scene::Mesh> mesh;  // its address names this, and it holds texels
   std::vector<Part> parts;

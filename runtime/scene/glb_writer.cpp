@@ -96,11 +96,14 @@ Json to_json(const GlbMaterial& material, Images& images) {
     pbr["baseColorTexture"] = {{"index", images.texture(material.base_color_image)}};
   } else {
     const auto& c = material.base_color;
-    pbr["baseColorFactor"] = {c[0], c[1], c[2], 1.0};
+    pbr["baseColorFactor"] = {c[0], c[1], c[2], material.opacity};
   }
+  if (material.base_color_image >= 0 && material.opacity < 1)
+    pbr["baseColorFactor"] = {1.0, 1.0, 1.0, material.opacity};
   pbr["metallicFactor"] = material.metallic;
   pbr["roughnessFactor"] = material.roughness;
   Json json = {{"name", material.name}, {"pbrMetallicRoughness", pbr}};
+  if (material.opacity < 1) json["alphaMode"] = "BLEND";
   if (material.emission_image >= 0) {
     json["emissiveTexture"] = {{"index", images.texture(material.emission_image)}};
   }
@@ -185,6 +188,7 @@ Result<std::string> glb_bytes(const Mesh& mesh, const std::string& name,
                                   material.emission_texture,
                                   material.roughness,
                                   material.metallic,
+                                  material.opacity,
                                   {},
                                   {}});
   }

@@ -19,6 +19,7 @@ struct GlbMaterial {
   std::array<double, 3> emission{0, 0, 0};
   int base_color_image = -1, emission_image = -1;  // index into GlbDocument::images
   double roughness = 1, metallic = 0;
+  double opacity = 1;  // below 1: blended
   // Of fixed-function OpenGL: KHR_materials_pbrSpecularGlossiness, where they are said.
   std::optional<double> specular, shininess;
 };

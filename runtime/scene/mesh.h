@@ -26,6 +26,9 @@ struct Material {
   float roughness = 1;
   float metallic = 0;
   float f0 = 0.04f;
+  // Share of what lies behind that it covers, 1 where a file does not say that it is blended. Its
+  // highlights and its texture's alpha have no share of their own.
+  float opacity = 1;
   // Of the law that lights vertices alone: strength of the highlight, and its exponent / 128.
   float specular = 0.5f, shininess = 0.5f;
 };

@@ -46,6 +46,10 @@ Sha256 mesh_hash(const Mesh& mesh) {
       feed(hasher, material.specular);
       feed(hasher, material.shininess);
     }
+    if (material.opacity != 1) {
+      hasher.text("opacity");
+      feed(hasher, material.opacity);
+    }
   }
   hasher.u64(mesh.textures.size());
   for (const Texture& texture : mesh.textures) feed(hasher, texture);

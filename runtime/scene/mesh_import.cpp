@@ -171,9 +171,10 @@ class Import {
       PROBE_ASSIGN(material.emission_texture,
                    find_texture(source, {aiTextureType_EMISSIVE, aiTextureType_EMISSION_COLOR}));
       PROBE_TRY(read_surface(source, material));
-      for (const float value : {material.base_color[0], material.base_color[1],
-                                material.base_color[2], material.emission[0], material.emission[1],
-                                material.emission[2], material.roughness, material.metallic}) {
+      for (const float value :
+           {material.base_color[0], material.base_color[1], material.base_color[2],
+            material.emission[0], material.emission[1], material.emission[2], material.roughness,
+            material.metallic, material.opacity}) {
         if (!std::isfinite(value)) {
           return asset_failure("material " + std::to_string(i) + " has a factor that is not finite",
                                path_);
@@ -191,6 +192,12 @@ class Import {
     if (gltf_) {
       source.Get(AI_MATKEY_ROUGHNESS_FACTOR, material.roughness);
       source.Get(AI_MATKEY_METALLIC_FACTOR, material.metallic);
+      aiString blending;
+      if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, blending) == AI_SUCCESS &&
+          std::string_view(blending.C_Str()) == "BLEND") {
+        source.Get(AI_MATKEY_OPACITY, material.opacity);
+        material.opacity = std::clamp(material.opacity, 0.0f, 1.0f);
+      }
       aiColor3D gloss;
       if (source.Get(AI_MATKEY_GLOSSINESS_FACTOR, material.shininess) == AI_SUCCESS &&
           source.Get(AI_MATKEY_COLOR_SPECULAR, gloss) == AI_SUCCESS) {

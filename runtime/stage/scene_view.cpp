@@ -254,7 +254,7 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   PROBE_ASSIGN(eye.written, make_camera(plan, camera));
   resize(eye.written, size);
   eye.on_mount = eye.written;
-  eye.samples = camera.samples == 0 ? 1 : camera.samples == 4 ? 2 : 4;
+  eye.samples = camera.samples == 0 || size.is_single ? 1 : camera.samples == 4 ? 2 : 4;
   // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
   if (record.photo != plan::kNone && eye.moving_mount < 0) {
     eye.photo = assets_->photo(record.photo);

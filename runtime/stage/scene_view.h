@@ -24,6 +24,7 @@ namespace probe::stage {
 // Pixels. Zero: the camera's own size; another one squeezes the picture, intrinsics with it.
 struct ImageSize {
   int width = 0, height = 0;
+  bool is_single = false;  // one sample a pixel, in its middle, however many the camera takes
 };
 
 // A camera's picture under the name that policies know it by.

@@ -401,12 +401,26 @@ TEST_CASE("a colour on a texture is in its pixels, clear geoms are told") {
                "<geom type=\"sphere\" size=\"0.01\" contype=\"0\" conaffinity=\"0\" group=\"1\" "
                "rgba=\"1 1 1 0.2\"/>");
   write_cup(folder, text);
-  const MujocoAsset cup = converted(cup_options(folder));
-  const scene::Mesh seen = mesh_of(folder, cup, "objects/cup/visual.glb");
+  MujocoAsset cup = converted(cup_options(folder));
+  scene::Mesh seen = mesh_of(folder, cup, "objects/cup/visual.glb");
   REQUIRE(seen.textures.size() == 1);
   CHECK(seen.textures[0].rgba[0] == 128);
   REQUIRE(cup.notes.size() == 1);
-  CHECK(cup.notes[0] == folder.path("cup.xml:14: a geom of opacity 0.2 is not drawn"));
+  CHECK(cup.notes[0] == folder.path("cup.xml:14: a geom of opacity 0.2 is drawn as one of 0.25"));
+  const auto clearest = [&] {
+    float least = 1;
+    for (const scene::Material& material : seen.materials)
+      least = std::min(least, material.opacity);
+    return least;
+  };
+  CHECK(clearest() == 0.2f);
+  text.replace(text.find("1 1 1 0.2"), 9, "1 1 1 0.1");
+  write_cup(folder, text);
+  cup = converted(cup_options(folder));
+  seen = mesh_of(folder, cup, "objects/cup/visual.glb");
+  REQUIRE(cup.notes.size() == 1);
+  CHECK(cup.notes[0] == folder.path("cup.xml:14: a geom of opacity 0.1 is not drawn"));
+  CHECK(clearest() == 1);
 }
 
 TEST_CASE("bad models are refused with what is wrong and where") {

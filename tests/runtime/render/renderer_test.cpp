@@ -68,6 +68,27 @@ TEST_CASE("a square face covers exactly the pixels whose centres project into it
   }
 }
 
+TEST_CASE("what covers less than half is not met by rays, unless there is nothing else") {
+  const auto mesh = square(0.1);
+  mesh->parts.push_back(mesh->parts[0]);
+  mesh->parts[1].material = 1;
+  for (std::size_t i = 0; i < mesh->parts[1].positions.size(); i += 3)
+    mesh->parts[1].positions[i] -= 0.2f;  // nearer
+  mesh->materials.resize(2);
+  const Camera camera = plain_camera(37, 21);
+  SceneSpec spec = square_scene(camera);
+  const auto depth = [&](float first, float second) {
+    mesh->materials[0].opacity = first;
+    mesh->materials[1].opacity = second;
+    spec.dynamics[0].mesh = std::make_shared<scene::Mesh>(*mesh);
+    return draw(*make(spec), {at(0.9, 0, 0)}).depth[10 * 37 + 18];
+  };
+  CHECK(depth(1, 1) == doctest::Approx(0.7));
+  CHECK(depth(1, 0.5f) == doctest::Approx(0.7));
+  CHECK(depth(1, 0.4f) == doctest::Approx(0.9));
+  CHECK(depth(0.4f, 0.4f) == doctest::Approx(0.7));
+}
+
 TEST_CASE("moving the image centre by ten pixels moves the picture by ten pixels") {
   Camera camera = plain_camera();
   const auto before_renderer = make(square_scene(camera));

@@ -255,6 +255,28 @@ TEST_CASE("an edge has quarters of its colour with four samples, all or nothing 
   }
 }
 
+TEST_CASE("a pane covers its share of what lies behind it, in quarters") {
+  auto wall = square(0.45, linear_of(200)), pane = square(0.2, linear_of(80));
+  wall->materials[0].specular = pane->materials[0].specular = 0;
+  for (const auto& [opacity, quarters] :
+       {std::pair{1.0f, 4}, {0.75f, 3}, {0.5f, 2}, {0.25f, 1}, {0.2f, 1}, {0.1f, 0}}) {
+    pane->materials[0].opacity = opacity;
+    CAPTURE(opacity);
+    for (const int samples : {1, 2}) {
+      SceneSpec spec = before_camera(std::make_shared<scene::Mesh>(*wall),
+                                     lit_by({sun_along(Vec3(1, 0, 0), 1)}), samples);
+      spec.dynamics.push_back(visual(std::make_shared<scene::Mesh>(*pane), 7, "pane"));
+      const auto renderer = vertex_renderer(spec);
+      const std::vector<Pose> poses{at(1, 0, 0), at(0.9, 0, 0)};
+      const auto frame = kept(renderer->render(poses));
+      CHECK(pixel(frame, 32, 32)[0] == 200 - 30 * quarters);
+      CHECK(pixel(frame, 10, 10)[0] == 200);
+      CHECK(frame.ids[32 * 64 + 32] == (quarters >= 2 ? 8 : 7));
+      CHECK(frame == kept(renderer->render_full(poses)));
+    }
+  }
+}
+
 TEST_CASE("two triangles share their edge: no sample is lost between them, none is shown twice") {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> place(-3000, 20000);

@@ -240,6 +240,19 @@ TEST_CASE("a written glb is the mesh again: materials, textures as they were enc
   CHECK(again->textures[0].width == mesh->textures[0].width);
   CHECK(again->textures[0].height == mesh->textures[0].height);
   CHECK(again->textures[0].rgba == mesh->textures[0].rgba);
+  Mesh clear = *mesh;
+  for (Material& material : clear.materials) material.opacity = 0.25f;
+  const auto clear_bytes = glb_bytes(clear, "t", "test");
+  REQUIRE(clear_bytes.ok());
+  const auto still_clear = load(write_text(folder / "w/c.glb", *clear_bytes), keep);
+  for (const MeshPart& part : still_clear->parts)
+    CHECK(still_clear->materials[static_cast<std::size_t>(part.material)].opacity == 0.25f);
+  // An alpha that no file says to blend by hides nothing.
+  std::string opaque = *clear_bytes;
+  for (std::size_t at = 0; (at = opaque.find("BLEND", at)) != std::string::npos; ++at)
+    opaque.replace(at, 5, "OTHER");
+  for (const Material& material : load(write_text(folder / "w/o.glb", opaque), keep)->materials)
+    CHECK(material.opacity == 1);
 }
 
 TEST_CASE("absurd meshes and pictures are refused with the limit") {

@@ -227,6 +227,10 @@ TEST_CASE("the content hash depends on what is drawn and not on the name") {
   mesh.materials[0].roughness = 1;
   mesh.parts[0].positions[4] = 1e-9f;
   CHECK(mesh_hash(mesh) != before);
+  mesh.parts[0].positions[4] = 0;
+  CHECK(mesh_hash(mesh) == before);
+  mesh.materials[0].opacity = 0.5f;
+  CHECK(mesh_hash(mesh) != before);
 }
 
 }  // namespace
