@@ -120,8 +120,12 @@ bool Called::has_part(const Things& of, ObjectId thing) const {
          });
 }
 
-std::optional<std::pair<std::string, std::string>> Called::other_than(const std::string& word,
-                                                                      const Things& of) const {
+std::optional<std::pair<std::string, std::string>> Called::other_than(
+    const std::vector<std::string>& words, const Things& of) const {
+  const std::string& word = words.front();
+  for (const Object& object : model_.objects) {
+    if (folded_words(object.text.text) == words) return std::nullopt;
+  }
   std::optional<std::pair<std::string, std::string>> first;
   for (const ObjectId id : of) {
     const Object& object = model_.objects[id];

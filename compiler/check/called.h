@@ -51,10 +51,11 @@ class Called {
   // Whether a word stands before the noun of some name, or is a value of an attribute.
   bool is_adjective(std::string_view word) const;
 
-  // Of a word that is a value of some attribute and true of none of these, as far as is known: the
-  // attribute, and what it is of the first of them.
-  std::optional<std::pair<std::string, std::string>> other_than(const std::string& word,
-                                                                const Things& of) const;
+  // Where the first of these words is a value of some attribute and true of none of the things that
+  // the others mean, as far as is known, and nothing that was declared is called so: the attribute,
+  // and what it is of the first of them.
+  std::optional<std::pair<std::string, std::string>> other_than(
+      const std::vector<std::string>& words, const Things& of) const;
 
   bool is_of_fixture(ObjectId thing) const { return model_.objects[thing].of.has_value(); }
 

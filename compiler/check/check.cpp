@@ -16,6 +16,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   if (reporter.is_stopped()) return;
   check_starts(model, checked.asset_root, reporter);
   if (reporter.is_stopped()) return;
+  if (!reporter.depth.is_immediate) check_buried(model, checked.asset_root, reporter);
   check_metrics(model, reporter);
   if (!reporter.depth.is_immediate) check_begun(model, checked.asset_root, reporter);
   check_expectations(model, reporter);

@@ -48,6 +48,7 @@ void check_mentions(const Model& model, Reporter& reporter);       // P0404 of w
 void check_named(const Model& model, Reporter& reporter);          // P0201 of metrics
 void check_starts(const Model& model, const AssetRoot& asset_root,
                   Reporter& reporter);                       // P0501, P0502, P0505, P1302, P1511
+void check_buried(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0507
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
 void check_begun(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0607
 // What of it only fingers or a gripper have, such as "`grip`"; empty where nothing is.

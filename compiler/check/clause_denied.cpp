@@ -39,6 +39,17 @@ Lack denied_lack(const ClauseFacts& facts, const Clause& clause) {
 }
 
 Lack left_lack(const ClauseFacts& facts, const Clauses::Left& left) {
+  const std::string said = fold_case(left.words);
+  const bool is_kept_off =
+      said.starts_with("keep ") && (has_words(said, "off") || has_words(said, "away from"));
+  if (left.is_spared && is_kept_off && left.of.size() == 2) {
+    const auto one = facts.bearing(*left.of.begin(), *left.of.rbegin());
+    if (one && one->near && one->asked && !one->apart) {
+      const bool is_first = facts.goal.above.contains({*left.of.begin(), *left.of.rbegin()});
+      return "success wants " + facts.name(is_first ? *left.of.begin() : *left.of.rbegin()) +
+             " to be there";
+    }
+  }
   if (!left.is_spared || left.of.size() != 1) return std::nullopt;
   const ObjectId thing = *left.of.begin();
   const std::string words = fold_case(left.words);

@@ -6,13 +6,11 @@
 namespace probe::sema {
 namespace {
 
-bool has_own_region(const Model& model, ObjectId id) {
-  const Fixture& fixture = model.fixtures[model.objects[id].of->fixture];
-  const Fixture::Part& part = fixture.parts[model.objects[id].of->part];
-  return part.declared && part.joint &&
-         std::any_of(
-             fixture.regions.begin(), fixture.regions.end(),
-             [&](const Fixture::OwnRegion& own) { return own.part == model.objects[id].of->part; });
+// A drawer, a door: a place of its own, whatever regions it has.
+bool is_own_place(const Model& model, ObjectId id) {
+  const OfFixture& of = *model.objects[id].of;
+  const Fixture::Part& part = model.fixtures[of.fixture].parts[of.part];
+  return part.declared && part.joint;
 }
 
 const Start::Placed* placed(const Task& task, ObjectId id) {
@@ -39,7 +37,10 @@ bool shares(const Things& a, const Things& b) {
 bool ClauseFacts::is_same_place(ObjectId a, ObjectId b) const {
   if (a == b) return true;
   if (!of(a) || !of(b) || of(a)->fixture != of(b)->fixture) return false;
-  return of(a)->part == of(b)->part || !has_own_region(model, a) || !has_own_region(model, b);
+  if (of(a)->part == of(b)->part || !is_own_place(model, a) || !is_own_place(model, b)) return true;
+  // The bottom of a drawer goes with it.
+  const auto& parts = model.fixtures[of(a)->fixture].parts;
+  return parts[of(a)->part].joint == parts[of(b)->part].joint;
 }
 
 std::optional<Goal::Bearing> ClauseFacts::bearing(ObjectId thing, ObjectId place) const {

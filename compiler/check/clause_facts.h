@@ -29,7 +29,7 @@ struct ClauseFacts {
   const std::optional<OfFixture>& of(ObjectId id) const { return model.objects[id].of; }
   bool is_spoken(ObjectId id) const { return goal.spoken.contains(id); }
   // Whether a region or a part stands for the other, or for the fixture that both are of. Two parts
-  // with regions of their own are two places.
+  // that move by themselves are two places.
   bool is_same_place(ObjectId a, ObjectId b) const;
   // How success measures a thing against a place, of all its comparisons of the two.
   std::optional<Goal::Bearing> bearing(ObjectId thing, ObjectId place) const;

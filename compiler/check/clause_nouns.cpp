@@ -90,7 +90,7 @@ std::optional<ClauseNouns::Noun> ClauseNouns::noun(std::size_t at) {
   const Called::Found name = called_.find(texts(at + 1, 4));
   if (name.length == 0 || words_[at].ends) return std::nullopt;
   out_.is_pure = false;
-  if (auto other = called_.other_than(words_[at].text, name.of))
+  if (auto other = called_.other_than(texts(at, 1 + name.length), name.of))
     out_.mistaken.push_back({*name.of.begin(), shown(at, at + 1 + name.length),
                              std::move(other->first), std::move(other->second)});
   if (name.of.size() != 1) return std::nullopt;

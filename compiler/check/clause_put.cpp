@@ -144,6 +144,29 @@ Lack nowhere_lack(const ClauseFacts& facts, ObjectId thing, const Clause& clause
   return "success measures " + facts.name(thing) + " against nothing";
 }
 
+// "put the cup beside the cabinet" or "on the cabinet" of which success wants it in a drawer.
+Lack outside_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
+                  const Clause& clause) {
+  if (moved.size() != 1 ||
+      (clause.lies != Clause::Where::kBeside && clause.lies != Clause::Where::kOn))
+    return std::nullopt;
+  const Things wanted = facts.wanted_at(moved[0]);
+  if (wanted.size() != 1) return std::nullopt;
+  const ObjectId region = *wanted.begin();
+  const auto& of = facts.of(region);
+  if (!of || !of->region) return std::nullopt;
+  const Fixture& fixture = facts.model.fixtures[of->fixture];
+  if (!fixture.parts[fixture.regions[*of->region].part].joint) return std::nullopt;
+  // "On the rack" may be in what slides out; "on the dishwasher" is not.
+  const bool is_elsewhere =
+      clause.lies == Clause::Where::kBeside ||
+      std::any_of(clause.where.begin(), clause.where.end(), [&](ObjectId place) {
+        return facts.of(place) && facts.of(place)->part != of->part;
+      });
+  if (!is_elsewhere) return std::nullopt;
+  return "success wants " + facts.name(moved[0]) + " to be in " + facts.name(region);
+}
+
 Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
                 const Clause& clause) {
   Goal::Bearing all;
@@ -163,6 +186,7 @@ Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
     if (auto why = height_lack(facts, moved, clause)) return why;
     if (auto why = beside_lack(facts, moved, clause, all)) return why;
     if (auto why = anywhere_lack(facts, moved, clause)) return why;
+    if (auto why = outside_lack(facts, moved, clause)) return why;
     // Not there is all that it wants.
     if (all.near || !all.apart || (all.other && all.asked) || moved.size() != 1 ||
         clause.where.empty())
@@ -185,6 +209,23 @@ Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
   return nowhere_lack(facts, thing, clause);
 }
 
+// What success asks of a thing and, alike, of one that the clause handles: of two things each.
+const Goal::Asked* asked_of_both(const ClauseFacts& facts, const Clause& clause, ObjectId spared) {
+  const auto is_handled = [&](const Things& of) {
+    return std::any_of(clause.what.begin(), clause.what.end(),
+                       [&](const Clause::What& what) { return what.of == of; });
+  };
+  for (const Goal::Asked& one : facts.goal.asked) {
+    if (one.of.size() < 2 || one.of[0] != Things{spared}) continue;
+    for (const Goal::Asked& other : facts.goal.asked) {
+      if (other.predicate == one.predicate && is_handled(other.of[0]) &&
+          std::equal(one.of.begin() + 1, one.of.end(), other.of.begin() + 1, other.of.end()))
+        return &one;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Lack spared_lack(const ClauseFacts& facts, const Clause& clause) {
@@ -198,10 +239,14 @@ Lack spared_lack(const ClauseFacts& facts, const Clause& clause) {
     if (is_way)
       return "success is that " + facts.name(spared) + " has moved " +
              (clause.does == Does::kOpens ? "at least so far as well" : "at most so far as well");
-    if (clause.does != Does::kPuts || clause.where.size() != 1) continue;
-    const auto one = facts.bearing(spared, *clause.where.begin());
+    const auto one = clause.does == Does::kPuts && clause.where.size() == 1
+                         ? facts.bearing(spared, *clause.where.begin())
+                         : std::nullopt;
     if (one && one->near && one->asked && !one->apart)
       return "success wants " + facts.name(spared) + " to be there as well";
+    if (const Goal::Asked* alike = asked_of_both(facts, clause, spared))
+      return "success asks `" + facts.model.predicates[alike->predicate].name + "` of " +
+             facts.name(spared) + " as well";
   }
   return std::nullopt;
 }

@@ -125,8 +125,9 @@ struct Privileged {
     return at < static_cast<int>(objects.size()) ? at : -1;
   }
   std::vector<PrivilegedFixture> fixtures;
-  std::size_t fixture_joints = 0;  // how many joints they have together
-  Pose base;                       // robot base in world
+  std::size_t fixture_joints = 0;   // how many joints they have together
+  std::vector<int> wrong_fixtures;  // parts among the task's distractors, as it lists them
+  Pose base;                        // robot base in world
   double surface_z = 0;
   Goal goal = Goal::kOnTarget;
   std::vector<Skill> solution;  // how the task can be solved; what it says goes before the goal

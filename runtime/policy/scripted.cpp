@@ -121,7 +121,8 @@ class StillWithoutPolicy final : public Policy {
   Result<Action> act(const Observation& observation) override {
     const Privileged* view = observation.privileged;
     // A solution in skills may be about other things than objects: the inner one knows.
-    if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty())
+    if (view != nullptr && view->object_of(role_) < 0 && view->solution.empty() &&
+        view->wrong_fixtures.empty())
       return stands_.act(observation);
     return inner_->act(observation);
   }

@@ -33,8 +33,8 @@ using RecordedActions = std::function<Result<RecordedEpisode>(
 // end.
 std::unique_ptr<Policy> make_recorded(std::string dir, RecordedActions recorded);
 
-// `inner` where the episode has role `role` (as Privileged::object_of() counts); else stays where
-// it is.
+// `inner` where the episode has role `role` (as Privileged::object_of() counts), a part among its
+// distractors or a solution; else stays where it is.
 std::unique_ptr<Policy> make_still_without(int role, std::unique_ptr<Policy> inner);
 
 // `inner` with normal noise on the first six numbers: standard deviation `sigma` metres on each

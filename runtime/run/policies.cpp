@@ -39,7 +39,7 @@ const std::array kOwnPolicies = {
           "",
           Kind::kWrong,
           {false, false, true},
-          "takes the first distractor, or stays still"},
+          "takes the first distractor, a thing or a part, or stays still"},
     Entry{"noisy",
           "SIGMA",
           Kind::kNoisy,

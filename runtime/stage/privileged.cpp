@@ -122,6 +122,7 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
     PROBE_ASSIGN(skills, vm::derive_solution(plan, task_index));
   }
   view.solution = solution_of(plan, skills, bodies);
+  view.wrong_fixtures = wrong_fixtures_of(plan, task, bodies);
   return view;
 }
 

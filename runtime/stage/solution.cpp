@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/plan/regions.h"
+#include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 
 namespace probe::stage {
@@ -107,6 +108,16 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
     solution.push_back(skill);
   }
   return solution;
+}
+
+std::vector<int> wrong_fixtures_of(const plan::Plan& plan, const plan::TaskRecord& task,
+                                   const TaskBodies& bodies) {
+  std::vector<int> found;
+  for (const plan::RoleRecord& role : plan::roles_of(plan.tables(), task).things) {
+    if (role.kind != static_cast<std::uint32_t>(plan::RoleKind::kPartDistractor)) continue;
+    if (const int at = seen_of(role.first, bodies).fixture; at >= 0) found.push_back(at);
+  }
+  return found;
 }
 
 }  // namespace probe::stage

@@ -15,4 +15,8 @@ std::vector<policy::Skill> solution_of(const plan::Plan& plan,
                                        std::span<const plan::SkillRecord> skills,
                                        const TaskBodies& bodies);
 
+// The parts among a task's distractors, in Privileged::fixtures.
+std::vector<int> wrong_fixtures_of(const plan::Plan& plan, const plan::TaskRecord& task,
+                                   const TaskBodies& bodies);
+
 }  // namespace probe::stage

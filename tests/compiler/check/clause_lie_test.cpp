@@ -187,3 +187,27 @@ TEST_CASE("a thing of another colour than it has") {
             .starts_with("warning[P1510]: `t` calls `cube` \"blue cube\", and its `color` is red"));
   CHECK(told_of_one("over(source, target)", "put the little cube on the tray") == "");
 }
+
+TEST_CASE("what is kept off a thing is not to lie on it") {
+  CHECK(told_of_one("over(source, target)", "keep the cube off the tray") ==
+        kSays + "\"keep the cube off the tray\" and success wants `cube` to be there");
+  CHECK(told_of_one("not over(source, target)", "keep the cube off the tray", kLying) == "");
+}
+
+TEST_CASE("beside a chest and on it is not in its drawer") {
+  for (const std::string words :
+       {"put {the source} beside the chest", "put {the source} behind the drawer",
+        "put {the source} on top of the chest"}) {
+    CAPTURE(words);
+    CHECK(told_of_chest("held_in(source, chest.inside)", words)
+              .find("success wants `cube` to be in `chest.inside`") != std::string::npos);
+  }
+  CHECK(told_of_chest("held_in(source, chest.inside)", "put {the source} in the chest") == "");
+  CHECK(told_of_chest("held_in(source, chest.inside)", "put {the source} into the drawer") == "");
+  CHECK(told_of_chest("held_in(source, chest.top)", "put {the source} on the chest") == "");
+}
+
+TEST_CASE("a name of something that is elsewhere is no wrong colour") {
+  CHECK(told_of_one("over(source, target)", "put the green cube on the tray")
+            .starts_with("error[P0404]"));
+}
