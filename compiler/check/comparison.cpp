@@ -168,7 +168,7 @@ struct Sweep {
   std::uint64_t horizon = 0;
   std::uint32_t idle = 0, delay = 0;
   auto key() const {
-    return std::tuple(decl.file.value, decl.begin, baseline, prompt, starts, horizon, idle, delay);
+    return std::tie(decl.file.value, decl.begin, baseline, starts, horizon, idle, delay, prompt);
   }
   bool operator<(const Sweep& other) const { return key() < other.key(); }
 };

@@ -1,52 +1,74 @@
 // P0505 as a warning: an object outside the image of every camera that does not move.
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "compiler/check/starts.h"
 #include "compiler/define/camera_shake.h"
 #include "compiler/define/views.h"
-#include "compiler/geometry/in_frame.h"
 
 namespace probe::sema {
 
+// Of cameras that jitter as they stand in one start. A frustum speaks of its camera.
+void Lookout::look(const Model& model, const Scene& scene, const std::vector<View>& views,
+                 std::size_t start) {
+  const std::vector<double> shakes = shakes_of(model, views, start);
+  seen_.clear();
+  fixed_.clear();
+  known_.clear();
+  seen_.reserve(views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    seen_.push_back(shaken(model.cameras[views[i].camera], shakes, i));
+    const auto frustum = Frustum::of(model, scene, seen_.back());
+    if (!frustum) continue;
+    if (fixed_.empty()) first_ = &model.cameras[views[i].camera];
+    fixed_.push_back(*frustum);
+    jitters_ = jitters_ || seen_.back().jitters();
+  }
+}
+
+std::size_t Lookout::Hash::operator()(const Key& key) const {
+  std::uint64_t hash = 0;
+  for (const double number : key) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x9e37'79b9'7f4a'7c15u;
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+double Lookout::outside(const Object& object, const Start::Placed& placed) {
+  const auto& [w, x, y, z] = placed.turn.rotation;
+  const Key key{static_cast<double>(placed.object), placed.x, placed.y, w, x, y, z};
+  const auto [at, is_new] = known_.try_emplace(key, kBehind);
+  if (!is_new) return at->second;
+  for (const Frustum& frustum : fixed_)
+    at->second = std::min(at->second, frustum.outside(object, placed).value_or(1e10));
+  return at->second;
+}
+
 // One warning for the task, of the object that is the farthest out of every camera that does not
 // move.
-void check_frame(const TaskStarts& starts) {
+void check_frame(const TaskStarts& starts, Lookouts& lookouts) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
   const std::vector<View> views = views_of(starts.model, starts.task);
-  const Camera* first = nullptr;
-  bool jitters = false;
-  // Of cameras that jitter as they stand in one start. A frustum speaks of its camera.
-  std::vector<Camera> seen;
-  std::vector<Frustum> fixed;
-  const auto look = [&](std::size_t start) {
-    const std::vector<double> shakes = shakes_of(starts.model, views, start);
-    seen.clear();
-    fixed.clear();
-    seen.reserve(views.size());
-    for (std::size_t i = 0; i < views.size(); ++i) {
-      seen.push_back(shaken(starts.model.cameras[views[i].camera], shakes, i));
-      const auto frustum = Frustum::of(starts.model, scene, seen.back());
-      if (!frustum) continue;
-      if (fixed.empty()) first = &starts.model.cameras[views[i].camera];
-      fixed.push_back(*frustum);
-      jitters = jitters || seen.back().jitters();
-    }
-  };
-  look(0);
-  if (fixed.empty()) return;
-  const Camera& camera = *first;
-  constexpr double kBehind = 1e9;  // px
+  std::vector<CameraId> cameras;
+  for (const View& view : views) cameras.push_back(view.camera);
+  Lookout& lookout = lookouts[{starts.task.scene, std::move(cameras)}];
+  // What jitters has another place in each start, and views their own by their names.
+  if (lookout.camera() == nullptr || lookout.jitters()) lookout.look(starts.model, scene, views, 0);
+  if (lookout.camera() == nullptr) return;
+  const Camera& camera = *lookout.camera();
+  constexpr double kBehind = Lookout::kBehind;
   double most = 0;
   std::size_t bad = 0, all = 0, episode = 0;
   const Start::Placed* worst = nullptr;
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
-    if (jitters && e > 0) look(e);
+    if (lookout.jitters() && e > 0) lookout.look(starts.model, scene, views, e);
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       ++all;
-      double out = kBehind;
-      for (const Frustum& frustum : fixed)
-        out = std::min(out, frustum.outside(starts.object(placed), placed).value_or(1e10));
+      const double out = lookout.outside(starts.object(placed), placed);
       if (out < 1) continue;  // part of a pixel is no loss
       ++bad;
       if (out <= most) continue;

@@ -17,7 +17,7 @@ void check_named(const Model& model, Reporter& reporter) {
     if (task.abstract || !task.complete) continue;
     const About about(reporter, task.decl_span);
     const std::vector<ObjectId> objects = task.objects();
-    const Mentioned found = mentioned.metrics(measured_in(task));
+    const Mentioned& found = mentioned.metrics(measured_in(task));
     for (const auto& [id, span] : found.objects) {
       if (std::find(objects.begin(), objects.end(), id) != objects.end()) continue;
       if (!said.insert({span.file.value, span.begin}).second) continue;

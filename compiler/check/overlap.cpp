@@ -100,6 +100,12 @@ double overlap_of(const TaskStarts& starts, const Start::Placed& a, const Start:
   return overlap(footprint(starts.object(a), a), footprint(starts.object(b), b));
 }
 
+// Farther from one another than both reach: most are.
+bool are_far(double reach, const Start::Placed& a, const Start::Placed& b) {
+  const double x = b.x - a.x, y = b.y - a.y;
+  return x * x + y * y > reach * reach;
+}
+
 }  // namespace
 
 void check_overlap(const TaskStarts& starts) {
@@ -110,10 +116,17 @@ void check_overlap(const TaskStarts& starts) {
     CountedStarts counted;
   };
   std::vector<Pair> pairs;
+  // By object, in the order in which every start has them.
+  std::vector<double> reach;
+  if (!starts.task.starts.empty()) {
+    for (const Start::Placed& placed : starts.task.starts.front().placed)
+      reach.push_back(reach_of(starts.object(placed)));
+  }
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     const auto& placed = starts.task.starts[e].placed;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       for (std::size_t j = i + 1; j < placed.size(); ++j) {
+        if (are_far(reach[i] + reach[j], placed[i], placed[j])) continue;
         // Boxes may touch: less than a micrometre is rounding.
         const double now = overlap_of(starts, placed[i], placed[j]);
         if (now <= 1e-6) continue;

@@ -58,6 +58,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
   std::map<const Start*, std::set<std::pair<Where, std::vector<CameraId>>>> fine_in;
   std::vector<bool> fine(model.tasks.size(), false);
   Arms arms;
+  Lookouts lookouts;
   Travels travels(model, asset_root);
   const bool is_immediate = reporter.depth.is_immediate;
   if (!is_immediate) check_fixture_places(model, travels, reporter);
@@ -93,7 +94,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
       is_reached = check_surface(starts) && check_reach(starts, arms);
       if (is_settled()) stands.insert(where);
     }
-    if (is_reached) check_frame(starts);
+    if (is_reached) check_frame(starts, lookouts);
     if (!is_immediate) check_motion(starts, travels);
     fine[index] = reporter.diagnostics.size() == before;
     if (is_settled()) known.insert({where, std::move(cameras)});

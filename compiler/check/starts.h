@@ -1,13 +1,16 @@
 // The starts of one task as the checks of places see them, and the words for a place.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "compiler/geometry/in_frame.h"
 #include "compiler/geometry/reachable.h"
 #include "compiler/geometry/travel.h"
 #include "compiler/model/model.h"
@@ -54,6 +57,35 @@ class Travels {
   std::map<SceneId, std::vector<ArmLink>> arms_;
 };
 
+// What the cameras of a task see that stand still, and how far things are out of it: many tasks put
+// the same before the same cameras.
+class Lookout {
+ public:
+  static constexpr double kBehind = 1e9;  // px
+
+  // As they stand in one start.
+  void look(const Model& model, const Scene& scene, const std::vector<View>& views,
+            std::size_t start);
+  // The first of them; null where none stands still.
+  const Camera* camera() const { return first_; }
+  bool jitters() const { return jitters_; }
+  // px, of the camera that it is the least out of; kBehind where it is behind each.
+  double outside(const Object& object, const Start::Placed& placed);
+
+ private:
+  const Camera* first_ = nullptr;
+  bool jitters_ = false;
+  std::vector<Camera> seen_;
+  std::vector<Frustum> fixed_;
+  // What stands where, and how it is turned: a frustum asks nothing else.
+  using Key = std::array<double, 7>;
+  struct Hash {
+    std::size_t operator()(const Key& key) const;
+  };
+  std::unordered_map<Key, double, Hash> known_;
+};
+using Lookouts = std::map<std::pair<SceneId, std::vector<CameraId>>, Lookout>;
+
 // A fixture of a task's scene whose parts are known, its joints where the task begins: alike in all
 // starts, or start by start.
 struct BegunFixture {
@@ -71,7 +103,7 @@ bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed);
 void check_overlap(const TaskStarts& starts);            // P0501
 bool check_surface(const TaskStarts& starts);            // P0505; false when something was reported
 bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above
-void check_frame(const TaskStarts& starts);              // P0505 as a warning
+void check_frame(const TaskStarts& starts, Lookouts& lookouts);  // P0505 as a warning
 void check_travel(const TaskStarts& starts, Travels& travels);                        // P1302
 void check_motion(const TaskStarts& starts, Travels& travels);                        // P1511
 void check_fixture_places(const Model& model, Travels& travels, Reporter& reporter);  // P1302

@@ -10,6 +10,11 @@ namespace probe::sema {
 
 bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed) {
   const std::array<double, 4>& area = starts.model.scenes[starts.task.scene].area;
+  // Most stand far from every edge.
+  const double reach = reach_of(starts.object(placed));
+  if (placed.x - reach >= area[0] && placed.x + reach <= area[2] && placed.y - reach >= area[1] &&
+      placed.y + reach <= area[3])
+    return false;
   const Footprint shape = footprint(starts.object(placed), placed);
   const double rx = shape.reach_along({1, 0});
   const double ry = shape.reach_along({0, 1});

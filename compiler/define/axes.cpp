@@ -70,6 +70,7 @@ bool same_places(const std::vector<GivenPlace>& a, const std::vector<GivenPlace>
 }
 
 bool same_layout(const Layout& a, const Layout& b) {
+  if (&a == &b) return true;
   if (a.by_rest != b.by_rest || a.jitter != b.jitter || a.drop != b.drop || a.settle != b.settle)
     return false;
   if (a.places.size() != b.places.size() || a.orients.size() != b.orients.size()) return false;
@@ -109,6 +110,8 @@ std::vector<std::vector<GivenJoint>> given_arms(const Model& model, const Task& 
 
 // Whether those of two tasks begin alike. A list without such rows is as long as any.
 bool same_given_arms(const Model& model, const Task& a, const Task& b) {
+  if (model.layouts[a.layout].given_joints.empty() && model.layouts[b.layout].given_joints.empty())
+    return true;
   std::vector<std::vector<GivenJoint>> here = given_arms(model, a), there = given_arms(model, b);
   const std::size_t longest = std::max(here.size(), there.size());
   here.resize(longest);
@@ -123,6 +126,7 @@ bool same_given_arms(const Model& model, const Task& a, const Task& b) {
 // A pose of an object that only one of the two has comes with that object and is no change of its
 // own.
 bool same_poses(const Model& model, const Task& a, const Task& b) {
+  if (a.poses.empty() && b.poses.empty()) return true;
   const std::vector<ObjectId> others = b.objects();
   for (const ObjectId object : a.objects()) {
     if (std::find(others.begin(), others.end(), object) == others.end()) continue;
@@ -131,17 +135,23 @@ bool same_poses(const Model& model, const Task& a, const Task& b) {
   return true;
 }
 
-std::string text_of(const std::optional<Spelled>& value) {
-  return value ? value->text : std::string();
+std::string_view text_of(const std::optional<Spelled>& value) {
+  return value ? std::string_view(value->text) : std::string_view();
 }
 
-std::optional<Spelled> main_photo(const Scene& scene) {
-  return scene.views.empty() ? std::nullopt : scene.views.front().overlay;
+std::string_view main_photo(const Scene& scene) {
+  return scene.views.empty() ? std::string_view() : text_of(scene.views.front().overlay);
+}
+
+// Whether both see what one scene has, and nothing else.
+bool see_one_scene(const Task& a, const Task& b) {
+  return a.scene == b.scene && a.cameras.empty() && b.cameras.empty();
 }
 
 // Whether policies get the same pictures under the same names. The photo behind the first is the
 // scene's; alone it needs no name.
 bool same_cameras(const Model& model, const Task& a, const Task& b) {
+  if (see_one_scene(a, b)) return true;
   const std::vector<View> here = views_of(model, a), there = views_of(model, b);
   if (here.size() != there.size()) return false;
   for (std::size_t i = 0; i < here.size(); ++i) {
@@ -154,6 +164,7 @@ bool same_cameras(const Model& model, const Task& a, const Task& b) {
 
 // What the cameras do to their pictures; of other views it is no question.
 bool same_sensors(const Model& model, const Task& a, const Task& b) {
+  if (see_one_scene(a, b)) return true;
   const std::vector<View> here = views_of(model, a), there = views_of(model, b);
   if (here.size() != there.size()) return true;
   for (std::size_t i = 0; i < here.size(); ++i) {
@@ -184,7 +195,7 @@ bool same_stage(const Model& model, const Scene& a, const Scene& b) {
          text_of(a.fixture) == text_of(b.fixture) &&
          stands_alike(a.fixture_position, a.surface_z, b.fixture_position, b.surface_z) &&
          text_of(a.backdrop) == text_of(b.backdrop) && a.backdrop_stands == b.backdrop_stands &&
-         text_of(main_photo(a)) == text_of(main_photo(b)) && same_fixtures(model, a, b);
+         main_photo(a) == main_photo(b) && same_fixtures(model, a, b);
 }
 
 bool same_physics(const Scene& a, const Scene& b) {
@@ -205,7 +216,7 @@ bool same_goal(const Model& model, const Task& a, const Task& b) {
          std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(), b.judged.end(),
                     [&](const Metric& p, const Metric& q) {
                       return p.name == q.name && p.readout == q.readout &&
-                             same_expression(model, p.expr, q.expr);
+                             (p.expr == q.expr || same_expression(model, p.expr, q.expr));
                     });
 }
 
@@ -236,8 +247,30 @@ bool same_shape(const Task& a, const Task& b) {
                     same_number);
 }
 
-// Whether a policy hears, sees and is judged by the same, whatever declarations say it.
+// Whether a policy hears the same. Their instructions are made up.
+bool same_prompts(const Task& a, const Task& b) {
+  return a.prompt == b.prompt &&
+         std::ranges::equal(a.later, b.later, {}, &LaterSentence::text, &LaterSentence::text);
+}
+
+// A layout that speaks of objects by their own names.
+bool places_by_name(const Model& model, const Layout& layout) {
+  const auto is_name = [&](const Spelled& word) {
+    return word.text != "distractors" && !find_role(model, word.text);
+  };
+  const auto names_any = [&](const Place& place) {
+    return std::ranges::any_of(place.what, is_name);
+  };
+  return std::ranges::any_of(layout.places, names_any) ||
+         std::ranges::any_of(layout.orients, is_name, &Orient::what) ||
+         (!layout.given.empty() &&
+          std::ranges::any_of(layout.given.front(), is_name, &GivenPlace::what));
+}
+
+// Whether a policy hears, sees and is judged by the same, whatever declarations say it. What tells
+// most tasks apart comes first.
 bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
+  if (!same_prompts(a, b)) return false;
   const Layout& layout = model.layouts[a.layout];
   if (!same_goal(model, a, b) || !same_layout(layout, model.layouts[b.layout]) ||
       !same_choice(a, b) ||
@@ -248,40 +281,26 @@ bool is_same_experiment(const Model& model, const Task& a, const Task& b) {
       !(model.lights[light_of(model, a)] == model.lights[light_of(model, b)]) ||
       !same_cameras(model, a, b) ||
       joint_starts_in_all(model, a) != joint_starts_in_all(model, b) ||
-      a.distractors.size() != b.distractors.size() || a.objects().size() != b.objects().size() ||
-      !same_shape(a, b) || a.things() != b.things() ||
+      a.distractors.size() != b.distractors.size() || !same_shape(a, b) || a.things() != b.things() ||
       !std::ranges::is_permutation(a.part_distractors, b.part_distractors))
     return false;
   // The order of distractors that both have is no difference.
   std::vector<ObjectId> here = a.objects(), there = b.objects();
-  const auto in_roles = static_cast<std::ptrdiff_t>(roles_filled(a));
+  if (here.size() != there.size()) return false;
+  const auto in_roles =
+      static_cast<std::ptrdiff_t>(here.size() - a.distractors.size() - a.placed.size());
   std::sort(here.begin() + in_roles, here.end());
   std::sort(there.begin() + in_roles, there.end());
-  const auto is_name = [&](const Spelled& word) {
-    return word.text != "distractors" && !find_role(model, word.text);
-  };
-  const bool by_name = std::any_of(layout.places.begin(), layout.places.end(),
-                                   [&](const Place& p) {
-                                     return std::any_of(p.what.begin(), p.what.end(), is_name);
-                                   }) ||
-                       std::any_of(layout.orients.begin(), layout.orients.end(),
-                                   [&](const Orient& o) { return is_name(o.what); }) ||
-                       (!layout.given.empty() &&
-                        std::any_of(layout.given.front().begin(), layout.given.front().end(),
-                                    [&](const GivenPlace& p) { return is_name(p.what); }));
+  // A layout that jitters, or that names objects, puts a twin elsewhere.
+  const bool tells_twins =
+      here != there && (layout.jitter > 0 || places_by_name(model, layout));
   for (std::size_t i = 0; i < here.size(); ++i) {
-    if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
-    // A layout that jitters, or that names objects, puts a twin elsewhere.
-    if (here[i] != there[i] && (by_name || layout.jitter > 0 ||
-                                !is_same_body(model.objects[here[i]], model.objects[there[i]])))
+    if (here[i] != there[i] &&
+        (tells_twins || !is_same_body(model.objects[here[i]], model.objects[there[i]])))
       return false;
+    if (rest_of(model, a, here[i]) != rest_of(model, b, there[i])) return false;
   }
-  if (a.later.size() != b.later.size() || !same_turns(model, a, b)) return false;
-  if (render_prompt(model, a) != render_prompt(model, b)) return false;
-  for (std::size_t i = 1; i < sentence_count(a); ++i) {
-    if (render_prompt(model, telling(a, i)) != render_prompt(model, telling(b, i))) return false;
-  }
-  return true;
+  return same_turns(model, a, b);
 }
 
 }  // namespace
@@ -298,7 +317,8 @@ class Comparison {
         stage_moves_(task.scene != baseline.scene &&
                      !same_stage(model, model.scenes[task.scene], model.scenes[baseline.scene])),
         scene_moves_(stage_moves_ || !same_physics(model.scenes[task.scene],
-                                                   model.scenes[baseline.scene])) {}
+                                                   model.scenes[baseline.scene])),
+        action_moves_(asks_otherwise(model, task, baseline)) {}
 
   bool moves(plan::Axis axis) const {
     switch (axis) {
@@ -307,16 +327,17 @@ class Comparison {
       case plan::Axis::kObjectTarget:
         return task_.target != baseline_.target;
       case plan::Axis::kObjectOther: {
-        for (const Role& role : model_.roles) {
-          if (other_moves(task_, baseline_, *find_role(model_, role.name))) return true;
+        if (task_.others.empty() && baseline_.others.empty()) return false;
+        for (std::size_t i = 0; i < model_.roles.size(); ++i) {
+          if (other_moves(task_, baseline_, model_.roles.id(i))) return true;
         }
         return false;
       }
       case plan::Axis::kDistractors:
-        return sorted(task_.distractors) != sorted(baseline_.distractors) ||
-               sorted(task_.part_distractors) != sorted(baseline_.part_distractors);
+        return !std::ranges::is_permutation(task_.distractors, baseline_.distractors) ||
+               !std::ranges::is_permutation(task_.part_distractors, baseline_.part_distractors);
       case plan::Axis::kLanguageAction:
-        return asks_otherwise(model_, task_, baseline_);
+        return action_moves_;
       case plan::Axis::kLanguageNegation:
         return has_negation(model_, task_) != has_negation(model_, baseline_);
       case plan::Axis::kLanguageAppearance:
@@ -324,14 +345,15 @@ class Comparison {
       case plan::Axis::kLanguageSpatial:
         return phrase_moves(axis);
       case plan::Axis::kLanguageParaphrase:
-        return is_reworded(model_, task_, baseline_);
+        return !action_moves_ && has_other_words(model_, task_, baseline_);
       case plan::Axis::kLayout:
         return !same_layout(model_.layouts[task_.layout], model_.layouts[baseline_.layout]) ||
                !same_choice(task_, baseline_) || !same_poses(model_, task_, baseline_);
       case plan::Axis::kScene:
         return scene_moves_;
       case plan::Axis::kSceneTexture:
-        return !stage_moves_ && !same_covers(scene(task_), scene(baseline_));
+        return !stage_moves_ && task_.scene != baseline_.scene &&
+               !same_covers(scene(task_), scene(baseline_));
       case plan::Axis::kSceneGeometry:
         return !stage_moves_ && scene(task_).surface_z != scene(baseline_).surface_z;
       // Another scene's joints begin where they do.
@@ -366,12 +388,9 @@ class Comparison {
 
  private:
   const Scene& scene(const Task& task) const { return model_.scenes[task.scene]; }
-  static std::vector<ObjectId> sorted(std::vector<ObjectId> objects) {
-    std::sort(objects.begin(), objects.end());
-    return objects;
-  }
 
   bool phrase_moves(plan::Axis axis) const {
+    if (task_.refer.empty() && baseline_.refer.empty()) return false;
     for (std::size_t i = 0; i < model_.roles.size(); ++i) {
       if (phrase_moves(axis, model_.roles.id(i))) return true;
     }
@@ -394,6 +413,7 @@ class Comparison {
   const Task& baseline_;
   bool stage_moves_;  // other things stand there: nothing else of the scene is told apart
   bool scene_moves_;
+  bool action_moves_;  // the words ask for another action
 };
 
 }  // namespace
@@ -410,6 +430,13 @@ std::uint32_t axes_between(const Model& model, const Task& task, const Task& bas
   for (const plan::AxisInfo& info : plan::kAxisTable)
     mask |= comparison.moves(info.axis) ? bit(info.axis) : 0;
   return mask;
+}
+
+bool differs(const Model& model, const Task& task, const Task& baseline) {
+  if (is_same_experiment(model, task, baseline)) return false;
+  const Comparison comparison(model, task, baseline);
+  return std::ranges::any_of(
+      plan::kAxisTable, [&](const plan::AxisInfo& info) { return comparison.moves(info.axis); });
 }
 
 std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Name& word) {

@@ -17,8 +17,11 @@ namespace probe::sema {
 // Whether a role beside source and target is filled by other objects.
 bool other_moves(const Task& task, const Task& baseline, RoleId role);
 
-// A mask of plan::Axis over the normalised records; names do not count.
+// A mask of plan::Axis over the normalised records; names do not count. Both are complete: what they
+// say is in Task::prompt.
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline);
+// Whether that is any.
+bool differs(const Model& model, const Task& task, const Task& baseline);
 
 // The axis that a phrase names, `appearance`; reported when no phrase can move it.
 std::optional<plan::Axis> phrase_axis(Diagnostics& diagnostics, const syntax::Name& word);

@@ -380,18 +380,17 @@ class Derive {
       }
     } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
       const auto& declared = context_.symbols.templates.names();
+      const std::string frame = fold_case(templates->frame.text);
       Task other = base;
       for (std::size_t i = 0; i < declared.size(); ++i) {
         other.say = static_cast<TemplateId>(i);
-        if (!fills_all(base, model.templates[other.say]) ||
-            !counts_fit(model, base, model.templates[other.say]))
+        const Template& words = model.templates[other.say];
+        if (words.frame != frame || !fills_all(base, words) || !counts_fit(model, base, words))
           continue;
+        other.prompt = render_prompt(model, other);
         // A control of the task's own words is none.
-        if (is_control(model.templates[other.say]) && render_prompt(model, other) == base.prompt)
-          continue;
-        if (model.templates[other.say].frame == fold_case(templates->frame.text) &&
-            axes_between(model, other, base) != 0)
-          values.push_back(declared[i].text);
+        if (is_control(words) && other.prompt == base.prompt) continue;
+        if (differs(model, other, base)) values.push_back(declared[i].text);
       }
     } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
       for (const syntax::Name& object : objects->objects) {

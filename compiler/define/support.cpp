@@ -92,6 +92,7 @@ std::optional<ObjectId> where_of(const Model& model, const Task& task, const Pla
 
 std::vector<Put> puts_of(const Model& model, const Task& task) {
   std::vector<Put> puts;
+  if (std::ranges::none_of(model.layouts[task.layout].places, &Place::is_put)) return puts;
   std::vector<ObjectId> placed;
   const auto is_own = [&](ObjectId id) {
     return std::ranges::any_of(model.layouts[task.layout].places, [&](const Place& place) {

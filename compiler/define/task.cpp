@@ -97,7 +97,7 @@ void read_allows(const syntax::Decl& decl, const std::vector<syntax::TaskStmt>& 
 
 }  // namespace
 
-std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object) {
+const std::vector<Turn>& rest_of(const Model& model, const Task& task, ObjectId object) {
   for (const PoseOverride& pose : task.poses) {
     if (pose.object == object) return pose.turns;
   }

@@ -48,7 +48,7 @@ class TaskTable {
 void expand_derives(Context& context, TaskTable& table);
 
 // How an object of a task is put down: the turns that the task gives it, or its own.
-std::vector<Turn> rest_of(const Model& model, const Task& task, ObjectId object);
+const std::vector<Turn>& rest_of(const Model& model, const Task& task, ObjectId object);
 
 // Its objects by name, for messages: "carrot, plate".
 std::string objects_text(const Model& model, const Task& task);

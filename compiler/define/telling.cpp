@@ -26,6 +26,7 @@ Task telling(const Task& task, std::size_t sentence) {
 
 std::vector<const Metric*> measured_in(const Task& task) {
   std::vector<const Metric*> measured;
+  measured.reserve(task.judged.size() + task.later.size());
   for (const Metric& metric : task.judged) measured.push_back(&metric);
   for (const LaterSentence& later : task.later) measured.push_back(&later.when);
   return measured;

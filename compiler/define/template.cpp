@@ -247,7 +247,7 @@ std::string render_prompt(const Model& model, const Task& task) {
 PromptFault fault_of_prompt(std::string_view prompt) {
   if (is_blank(prompt)) return PromptFault::kNoWords;
   if (prompt.size() > kMaxPromptBytes) return PromptFault::kTooLong;
-  if (prompt.find_first_of("{}") != prompt.npos) return PromptFault::kBraces;
+  if (prompt.find('{') != prompt.npos || prompt.find('}') != prompt.npos) return PromptFault::kBraces;
   return defect_of(prompt).empty() ? PromptFault::kNone : PromptFault::kForm;
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "compiler/define/telling.h"
@@ -78,8 +80,12 @@ enum class Form { kWritten, kPlain };
 // The words with their signs and in their case, or without, but for articles; `{the source}` is one
 // of them, whatever words are chosen for it. Views into the model.
 std::vector<Word> words_of(const Model& model, const Task& task, Form form) {
+  const Template& say = model.templates[task.say];
   std::vector<Word> words;
-  for (const Template::Part& part : model.templates[task.say].parts) {
+  std::size_t most = 0;
+  for (const Template::Part& part : say.parts) most += part.slot ? 2 : part.words.size();
+  words.reserve(most);
+  for (const Template::Part& part : say.parts) {
     if (part.slot) {
       // One that fills a role is that role, however the text names it.
       const SlotRef& slot = *part.slot;
@@ -109,14 +115,33 @@ std::string plain(std::string_view word) {
   return fold_case(word.substr(begin, word.find_last_not_of(kSigns) + 1 - begin));
 }
 
-bool says_the_opposite(const std::vector<Word>& a, const std::vector<Word>& b) {
-  const auto says_first = [&](std::string_view one, std::string_view other) {
-    return has(a, one) && !has(a, other) && has(b, other) && !has(b, one);
-  };
-  for (const auto& [one, other] : kOpposites) {
-    if (says_first(one, other) || says_first(other, one)) return true;
+// A bit for each word of a pair of opposites: 2 i for the first of pair i, 2 i + 1 for the second.
+using Sides = std::uint64_t;
+static_assert(2 * kOpposites.size() <= 64);
+constexpr Sides kFirst = 0x5555'5555'5555'5555u;
+
+Sides sides_in(const std::vector<Word>& words) {
+  static const std::unordered_map<std::string_view, Sides> known = [] {
+    std::unordered_map<std::string_view, Sides> sides;
+    for (std::size_t i = 0; i < kOpposites.size(); ++i) {
+      sides[kOpposites[i].first] |= Sides{1} << (2 * i);
+      sides[kOpposites[i].second] |= Sides{2} << (2 * i);
+    }
+    return sides;
+  }();
+  Sides sides = 0;
+  for (const Word& word : words) {
+    if (word.is_object) continue;
+    if (const auto at = known.find(word.text); at != known.end()) sides |= at->second;
   }
-  return false;
+  return sides;
+}
+
+bool says_the_opposite(const std::vector<Word>& a, const std::vector<Word>& b) {
+  const auto first_alone = [](Sides sides) { return sides & ~(sides >> 1) & kFirst; };
+  const auto second_alone = [](Sides sides) { return sides >> 1 & ~sides & kFirst; };
+  const Sides here = sides_in(a), there = here == 0 ? 0 : sides_in(b);
+  return ((first_alone(here) & second_alone(there)) | (second_alone(here) & first_alone(there))) != 0;
 }
 
 // The same words around other objects, or opposites in one place.
@@ -259,8 +284,18 @@ bool contradicts(const Model& model, const Task& a, const Task& b) {
 }
 
 bool is_reworded(const Model& model, const Task& a, const Task& b) {
-  if (has_negation(model, a) != has_negation(model, b) || asks_otherwise(model, a, b)) return false;
+  return !asks_otherwise(model, a, b) && has_other_words(model, a, b);
+}
+
+bool has_other_words(const Model& model, const Task& a, const Task& b) {
+  if (has_negation(model, a) != has_negation(model, b)) return false;
+  const auto names_any = [](const Template& say) {
+    return std::ranges::any_of(say.parts, [](const Template::Part& part) {
+      return part.slot && part.slot->role == RoleId::kNone;
+    });
+  };
   const auto differ = [&](const Task& here, const Task& there) {
+    if (here.say == there.say && !names_any(model.templates[here.say])) return false;
     return words_of(model, here, Form::kWritten) != words_of(model, there, Form::kWritten);
   };
   if (differ(a, b)) return true;

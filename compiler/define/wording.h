@@ -56,5 +56,7 @@ std::vector<std::string> sentence_of(const Template& say);
 // Whether two instructions ask for the same in other words, articles aside. A negation brings its
 // own words.
 bool is_reworded(const Model& model, const Task& a, const Task& b);
+// The same of two that are known to ask for the same.
+bool has_other_words(const Model& model, const Task& a, const Task& b);
 
 }  // namespace probe::sema

@@ -27,6 +27,15 @@ Footprint footprint(const Object& object, const Start::Placed& placed) {
   return result;
 }
 
+double reach_of(const Object& object) {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double most = std::max(std::abs(object.box_min[i]), std::abs(object.box_max[i]));
+    sum += most * most;
+  }
+  return std::sqrt(sum) + 1e-6;
+}
+
 double overlap(const Footprint& a, const Footprint& b) {
   double least = 1e9;
   for (const Footprint* shape : {&a, &b}) {

@@ -25,6 +25,10 @@ struct Footprint {
 
 Footprint footprint(const Object& object, const Start::Placed& placed);
 
+// How far the box reaches from its model's origin, however it is turned, and a little more than
+// rounding takes away (m).
+double reach_of(const Object& object);
+
 // How deep two footprints stand in one another (m), over their separating axes; at most 0 when some
 // line separates them.
 double overlap(const Footprint& a, const Footprint& b);

@@ -18,10 +18,15 @@ const Mentioned& MentionedIn::expression(ExprRef ref) {
   return known_[ref];
 }
 
-Mentioned MentionedIn::metrics(std::span<const Metric* const> metrics) {
-  Mentioned all;
-  for (const Metric* metric : metrics) all.add(expression(metric->expr));
-  return all;
+const Mentioned& MentionedIn::metrics(std::span<const Metric* const> metrics) {
+  std::vector<ExprRef> key;
+  key.reserve(metrics.size());
+  for (const Metric* metric : metrics) key.push_back(metric->expr);
+  const auto [at, is_new] = together_.try_emplace(std::move(key));
+  if (is_new) {
+    for (const ExprRef expr : at->first) at->second.add(expression(expr));
+  }
+  return at->second;
 }
 
 // Recursion is bounded by the height of expressions; a predicate's body is looked at once.

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "compiler/model/model.h"
 
@@ -25,7 +27,7 @@ class MentionedIn {
 
   const Mentioned& expression(ExprRef ref);
   // Of all metrics of a task.
-  Mentioned metrics(std::span<const Metric* const> metrics);
+  const Mentioned& metrics(std::span<const Metric* const> metrics);
 
  private:
   void look(ExprRef ref, Mentioned& out);
@@ -33,6 +35,7 @@ class MentionedIn {
 
   const Model& model_;
   std::map<ExprRef, Mentioned> known_;
+  std::map<std::vector<ExprRef>, Mentioned> together_;  // many tasks are judged by the same
 };
 
 }  // namespace probe::sema

@@ -54,6 +54,9 @@ bool Light::operator==(const Light& other) const {
 
 std::vector<ObjectId> Task::objects() const {
   std::vector<ObjectId> all;
+  std::size_t most = 2 + distractors.size() + placed.size();
+  for (const Filled& role : others) most += role.objects.size();
+  all.reserve(most);
   for (const ObjectId id : {source, target}) {
     if (id != ObjectId::kNone && is_object(id)) all.push_back(id);
   }

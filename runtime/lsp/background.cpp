@@ -13,6 +13,15 @@ Background::~Background() {
   if (thread_.joinable()) thread_.join();
 }
 
+void Background::let_go(std::shared_ptr<void> old) {
+  {
+    const std::lock_guard lock(mutex_);
+    old_.push_back(std::move(old));
+    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+  }
+  wakes_.notify_all();
+}
+
 void Background::ask(Work work) {
   {
     const std::lock_guard lock(mutex_);
@@ -33,6 +42,14 @@ void Background::cancel() {
 void Background::run() {
   std::unique_lock lock(mutex_);
   while (!ends_) {
+    if (!old_.empty()) {
+      auto old = std::move(old_);
+      old_.clear();
+      lock.unlock();
+      old.clear();
+      lock.lock();
+      continue;
+    }
     if (next_ == nullptr) {
       wakes_.wait(lock);
       continue;

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace probe::lsp {
 
@@ -26,6 +28,8 @@ class Background {
   void ask(Work work);
   // What is being done is not wanted.
   void cancel();
+  // Lets go of something large, at once: an answer does not wait for that.
+  void let_go(std::shared_ptr<void> old);
 
  private:
   void run();
@@ -36,6 +40,7 @@ class Background {
   Work next_;
   std::chrono::steady_clock::time_point due_;
   std::atomic<bool> stop_ = false;  // of what is being done
+  std::vector<std::shared_ptr<void>> old_;
   bool ends_ = false;
   std::thread thread_;
 };

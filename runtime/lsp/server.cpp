@@ -225,6 +225,7 @@ class TextServer final : public Server {
     is_stale_ = false;
     workspace_.refresh();
     publish();
+    if (auto old = workspace_.take_old()) background_.let_go(std::move(old));
     ask_whole_checks();
   }
 

@@ -188,9 +188,18 @@ bool Workspace::refresh() {
     programs_.push_back(std::move(program));
   }
   is_new = is_new || programs_.size() != before.size();
+  for (auto& program : before) {
+    if (program != nullptr) old_.push_back(std::move(program));
+  }
   touched_.clear();
   is_all_touched_ = false;
   return is_new;
+}
+
+std::shared_ptr<void> Workspace::take_old() {
+  auto old = std::make_shared<std::vector<std::unique_ptr<Program>>>(std::move(old_));
+  old_.clear();
+  return old->empty() ? nullptr : old;
 }
 
 Workspace::Found Workspace::find(const std::string& path) {

@@ -52,6 +52,8 @@ class Workspace {
   void touch(const std::string& path);
   // Every program as it is now. Whether any of them was read anew.
   bool refresh();
+  // What was in their places before, since the last call: whoever asked may let go of it later.
+  std::shared_ptr<void> take_old();
   const std::vector<std::unique_ptr<Program>>& programs() const { return programs_; }
   // The program and the file of an open text; null for any other.
   struct Found {
@@ -79,6 +81,7 @@ class Workspace {
   std::vector<std::unique_ptr<Program>> programs_;
   std::set<std::string> touched_;
   bool is_all_touched_ = false;
+  std::vector<std::unique_ptr<Program>> old_;
   std::vector<std::unique_ptr<language::Snapshot>> others_;
   bool has_others_ = false;
   std::string missed_;

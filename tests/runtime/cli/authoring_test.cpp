@@ -98,3 +98,66 @@ TEST_CASE("the suite is found from any folder, and a named library folder is the
   CHECK(nowhere.exit == 1);
   CHECK(contains(nowhere.err, "holds no std/"));
 }
+
+TEST_CASE("the picture from above says which way is left, and words go by the same left") {
+  Sandbox box;
+  const auto mine = [&](const std::string& coke, const std::string& pepsi) {
+    write_file(box / "mine.probe",
+               "use \"suite/intact.probe\"\n"
+               "use \"std/space.probe\"\n"
+               "extend object coke_can {\n"
+               "  phrase left_can spatial \"left can\" means category drink and leftmost\n"
+               "}\n"
+               "layout sides {\n"
+               "  place source at (-16cm, " + coke + ")\n"
+               "  place distractors at (-16cm, " + pepsi + ")\n"
+               "  place target at (-8cm, 0cm)\n"
+               "  orient by rest\n  drop 50cm settle 0.5s\n"
+               "}\n"
+               "task mine like carrot_on_plate {\n"
+               "  layout sides; source coke_can; distractors pepsi_can; refer source as left_can\n"
+               "}\n");
+  };
+  const auto height_of = [](const std::string& svg, const std::string& word) {
+    const std::size_t end = svg.find(">" + word + "</text>");
+    REQUIRE(end != svg.npos);
+    return std::stod(svg.substr(svg.rfind(" y=\"", end) + 4));
+  };
+  mine("-8cm", "8cm");
+  const Outcome right = box.vlaprobe("check mine.probe");
+  CHECK_MESSAGE(right.exit == 0, right.err);
+  const Outcome drawn = box.vlaprobe("draw mine.probe mine");
+  REQUIRE_MESSAGE(drawn.exit == 0, drawn.err);
+  // The world's y goes up there, and what lies at less of it is on the left of this camera.
+  CHECK(height_of(drawn.out, "left") > height_of(drawn.out, "right"));
+  CHECK(contains(drawn.out, ">left and right: as</text>"));
+  CHECK(contains(drawn.out, ">third_view sees it</text>"));
+
+  mine("8cm", "-8cm");
+  const Outcome wrong = box.vlaprobe("check mine.probe");
+  CHECK(wrong.exit == 1);
+  CHECK_MESSAGE(contains(wrong.err, "[P0401]: \"left can\" does not denote `coke_can`"), wrong.err);
+  CHECK(contains(wrong.err, "there it denotes `pepsi_can`"));
+}
+
+TEST_CASE("an object that a metric names is looked for in the scene, and is told how to come there") {
+  Sandbox box;
+  const auto check = [&](const std::string& object, const std::string& more = "") {
+    write_file(box / "mine.probe",
+               "use \"suite/intact.probe\"\n"
+               "metrics near like put_strict { beside = at end (distance(source, " + object +
+                   ") < 10cm) }\n"
+                   "variant mine of carrot_on_plate { metrics near" + more + " }\n");
+    return box.vlaprobe("check mine.probe");
+  };
+  // It is declared, in a file that is used, and not there.
+  const Outcome absent = check("towel");
+  CHECK(absent.exit == 1);
+  CHECK(contains(absent.err, "[P0201]: object `towel` is not in the scene of `mine`"));
+  CHECK(contains(absent.err, "its scene has carrot, plate"));
+  CHECK(contains(absent.err, "or `distractors towel`"));
+  CHECK(contains(check("towl").err, "did you mean `towel`?"));
+  // As it was told.
+  const Outcome there = check("towel", "; distractors towel");
+  CHECK_MESSAGE(!contains(there.err, "error["), there.err);
+}
