@@ -12,8 +12,8 @@
 #include "compiler/audit/rules.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
-#include "runtime/plan/later.h"
 #include "runtime/plan/axes.h"
+#include "runtime/plan/later.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/derived_solution.h"
 
@@ -299,6 +299,12 @@ class Auditor {
     constexpr Rule kHeld = {Kind::kHeld, "success",
                             "`success` is true of a source that both fingers hold above the "
                             "target and nothing else touches"};
+    constexpr Rule kOneOnTable = {Kind::kBeside, "success",
+                                  "`success` is true when one of the things that are put somewhere "
+                                  "lies on the table, its box clear of where it belongs"};
+    constexpr Rule kOneHeld = {Kind::kHeld, "success",
+                               "`success` is true when one of the things that are put somewhere is "
+                               "still held above it and nothing else touches it"};
     constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
                              "`success` is true before anything has moved: things begin so"};
     std::map<std::uint32_t, bool> counts_target;  // by program
@@ -328,6 +334,14 @@ class Auditor {
         if (on_fixture) add_rule(kOnFixture, index);
         PROBE_ASSIGN(const bool held, passes_held(plan_, index, *success));
         if (held) add_rule(kHeld, index);
+        PROBE_ASSIGN(const SeveralPut several, passes_of_several(plan_, index, *success));
+        if (several.beside) add_rule(kOneOnTable, index);
+        if (several.held) add_rule(kOneHeld, index);
+        if (several.is_one || several.is_known) {
+          ++audit_.tried;
+        } else {
+          audit_.untried.push_back(name_of(index));
+        }
         PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
         if (begun) add_rule(kBegun, index);
         PROBE_TRY(find_swapped_order(index));
@@ -418,6 +432,13 @@ class Auditor {
     for (const UnheldWords& one : compilation_.unheld) by_task[one.task].push_back(&one);
     std::map<std::pair<std::string_view, std::string_view>, std::size_t> known;
     audit_.heard = scope_.size();
+    for (const std::uint32_t task : scope_) {
+      std::set<std::array<std::uint8_t, 32>> seen;
+      for (const plan::EpisodeRecord& episode : plan_.episodes(plan_.tasks()[task])) {
+        ++audit_.starts;
+        if (!seen.insert(episode.start_id).second) ++audit_.repeated;
+      }
+    }
     for (const std::uint32_t task : scope_) {
       const auto found = by_task.find(plan_.text(plan_.tasks()[task].name));
       if (found == by_task.end()) {

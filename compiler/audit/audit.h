@@ -77,6 +77,11 @@ struct Audit {
   std::vector<RobotFacts> robots;
   std::vector<Unheld> unheld;  // in the order of the tasks; empty of a compilation without them
   std::size_t held = 0, heard = 0;  // tasks all of whose words are held to success, of how many
+  // Tasks whose success was put to the test in made-up worlds; those of which it is not known how it
+  // is come by, where several things are put somewhere, and which were not.
+  std::size_t starts = 0, repeated = 0;  // that an earlier start of the same task equals
+  std::size_t tried = 0;
+  std::vector<std::string> untried;
   std::vector<std::string> unchecked;  // columns of a published table that are no set
 };
 

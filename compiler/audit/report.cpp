@@ -65,8 +65,6 @@ std::string to_text(const Audit& audit) {
       fmt::format_to(out, "  \"{}\": {}\n    --> {}:{}:{}\n    in {}\n", one.words, one.why,
                      one.place.file, one.place.line, one.place.column, list(one.tasks));
     }
-    fmt::format_to(out, "  of {} of {} all words are held to success\n", audit.held,
-                   counted(audit.heard, "task"));
     if (audit.findings.empty()) text += '\n';
   }
   if (!audit.unchecked.empty()) {
@@ -75,13 +73,25 @@ std::string to_text(const Audit& audit) {
   }
   if (!audit.findings.empty()) text += '\n';
   for (const RobotFacts& robot : audit.robots) text += to_text(robot) + '\n';
-  fmt::format_to(out, "suite `{}`, {}, {}: {}\n", audit.suite, counted(audit.tasks, "task"),
-                 counted(audit.comparisons, "comparison"),
-                 audit.findings.empty()
-                     ? "nothing irregular"
-                     : fmt::format("{} {}, {} of them allowed with a reason", audit.findings.size(),
-                                   audit.findings.size() == 1 ? "irregularity" : "irregularities",
-                                   allowed));
+  fmt::format_to(
+      out,
+      "looked at: all words of {} of {} are held to success; success of {} of {} was put to "
+      "the test in made-up worlds{}\n",
+      audit.held, counted(audit.heard, "task"), audit.tried, counted(audit.heard, "task"),
+      audit.untried.empty()
+          ? ""
+          : ", not that of " + list(audit.untried) +
+                ", where it is not known how several things come to be where they belong");
+  if (audit.repeated > 0)
+    fmt::format_to(out, "{} of {} repeat another start of the same task, to the last bit\n",
+                   audit.repeated, counted(audit.starts, "start"));
+  fmt::format_to(
+      out, "suite `{}`, {}, {}: {}\n", audit.suite, counted(audit.tasks, "task"),
+      counted(audit.comparisons, "comparison"),
+      audit.findings.empty()
+          ? "nothing irregular"
+          : fmt::format("{} {}, {} of them allowed with a reason", audit.findings.size(),
+                        audit.findings.size() == 1 ? "irregularity" : "irregularities", allowed));
   return text;
 }
 
@@ -107,6 +117,10 @@ std::string to_json(const Audit& audit) {
     entry["allowed"] = finding.allowed ? Json(*finding.allowed) : Json();
     json["findings"].push_back(std::move(entry));
   }
+  json["starts"] = audit.starts;
+  json["repeated"] = audit.repeated;
+  json["tried"] = audit.tried;
+  json["untried"] = audit.untried;
   json["held"] = audit.held;
   json["heard"] = audit.heard;
   json["not_held"] = Json::array();

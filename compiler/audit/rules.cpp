@@ -6,7 +6,9 @@
 #include "runtime/plan/isa.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/plan/roles.h"
+#include "runtime/plan/skills.h"
 #include "runtime/vm/claims.h"
+#include "runtime/vm/derived_solution.h"
 #include "runtime/vm/made_up.h"
 #include "runtime/vm/placed_world.h"
 
@@ -96,6 +98,96 @@ Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32
   world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
   world.hold_source();
   return vm::judge_world(plan, task, success, std::move(world));
+}
+
+namespace {
+
+struct PutThing {
+  std::uint16_t object = 0;
+  vm::PutPlace place;
+};
+
+// How one of several things is, instead of as it should be.
+enum class Amiss : std::uint8_t { kNothing, kBeside, kHeld };
+
+// Worlds one after the other, the first with nothing put, the last with all, one of them amiss.
+std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t task,
+                                       std::span<const PutThing> puts, std::size_t odd,
+                                       Amiss amiss) {
+  std::vector<vm::MadeUpWorld> worlds = {vm::make_up_world(plan, task)};
+  for (std::size_t count = 1; count <= puts.size(); ++count) {
+    vm::MadeUpWorld world = worlds.front();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == odd && amiss != Amiss::kNothing) continue;
+      vm::put_at(plan, plan.tasks()[task], puts[i].object, puts[i].place, static_cast<double>(i),
+                 &world);
+    }
+    if (odd < count && amiss != Amiss::kNothing) {
+      world.source = puts[odd].object;
+      world.target = static_cast<std::uint16_t>(puts[odd].place.to);
+      if (amiss == Amiss::kBeside) {
+        Vec3 at = beside(world);
+        at.z() = world.sample.bodies[world.source].position.z();
+        world.put(world.source, at);
+        for (const std::uint16_t body : {world.source, world.target})
+          world.press_down(body, world.surface);
+      } else {
+        const double above =
+            world.starts[world.source].half.z() + world.starts[world.target].half.z() + kHeldGap;
+        world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
+        world.hold_source();
+      }
+    }
+    vm::put_contacts_in_order(&world);
+    worlds.push_back(std::move(world));
+  }
+  return worlds;
+}
+
+}  // namespace
+
+Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
+                                     std::uint32_t success) {
+  SeveralPut found;
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const plan::TaskRoles roles = plan::roles_of(plan.tables(), record);
+  std::size_t movable = 0;
+  for (std::uint32_t o = 0; o < roles.objects; ++o) {
+    const bool has_role = !plan::role_of_body(plan.tables(), roles, o).empty();
+    movable += has_role && o != roles.target && !roles.is_distractor(o);
+  }
+  if (movable < 2 || plan.episodes(record).empty()) return found;
+  const auto said = plan::skills_of(plan.tables(), task);
+  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+  if (skills.empty()) {
+    PROBE_ASSIGN(skills, vm::derive_solution(plan, task));
+  }
+  std::vector<PutThing> puts;
+  bool is_plain = !skills.empty();
+  for (const plan::SkillRecord& skill : skills) {
+    const bool is_put = static_cast<plan::Skill>(skill.skill) == plan::Skill::kPut;
+    is_plain = is_plain && is_put && skill.region == plan::kNone && skill.to < roles.objects;
+    if (is_put)
+      puts.push_back({static_cast<std::uint16_t>(skill.body),
+                      {skill.to, skill.region, static_cast<plan::SkillRelation>(skill.relation)}});
+  }
+  found.is_one = !skills.empty() && puts.size() < 2;
+  if (found.is_one || !is_plain) return found;
+  PROBE_ASSIGN(found.is_known, vm::judge_worlds(plan, task, success,
+                                                worlds_of(plan, task, puts, 0, Amiss::kNothing)));
+  const bool on_surface = plan.scenes()[record.scene].fixture_collision == plan::kNone;
+  for (std::size_t i = 0; found.is_known && i < puts.size(); ++i) {
+    if (on_surface && puts[i].place.relation != plan::SkillRelation::kBeside) {
+      PROBE_ASSIGN(
+          const bool beside,
+          vm::judge_worlds(plan, task, success, worlds_of(plan, task, puts, i, Amiss::kBeside)));
+      found.beside = found.beside || beside;
+    }
+    PROBE_ASSIGN(const bool held, vm::judge_worlds(plan, task, success,
+                                                   worlds_of(plan, task, puts, i, Amiss::kHeld)));
+    found.held = found.held || held;
+  }
+  return found;
 }
 
 Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {

@@ -29,6 +29,16 @@ Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32
 // joints of fixtures: a drawer that is to be opened begins open.
 Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
+// The same two questions of tasks that put several things somewhere, asked of each of these while
+// the others are where they belong, put there in their order.
+struct SeveralPut {
+  bool is_one = true;       // one thing is put, or none: the questions above are all
+  bool is_known = false;    // where things belong was found out, so each was asked about
+  bool beside = false, held = false;  // true of one that lies on the surface; that is still held
+};
+Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
+                                     std::uint32_t success);
+
 // Whether metric `success` is false unless fingers touch for some steps on end, the last one
 // included: a condition held over steps that nothing latches.
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);

@@ -1,6 +1,6 @@
-// P0607: success that is true before anything has moved, in starts of a task. A policy that
-// does nothing has them. What is not known before things settle, as whether one lies on another,
-// says nothing here.
+// P0607: success that is true before anything has moved, in starts of a task, and what is asked
+// "was it ever so" and is so in all of them. A policy that does nothing has them. What is not known
+// before things settle, as whether one lies on another, says nothing here.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -28,32 +28,43 @@ class BegunChecker {
       : model_(model), centres_(asset_root), reporter_(reporter) {}
 
   void check(const Task& task) {
-    const auto success = std::find_if(task.judged.begin(), task.judged.end(),
-                                      [](const Metric& one) { return one.name == "success"; });
-    if (success == task.judged.end() || success->type.kind != TypeKind::kBool ||
-        task.starts.empty() || !task.motions.empty() ||
-        model_.layouts[task.layout].begins_placed)
+    if (task.starts.empty() || !task.motions.empty() || model_.layouts[task.layout].begins_placed)
       return;
-    const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
-    const lower::Program* program = program_of(task, *success, bodies);
-    if (program == nullptr) return;
     // What is measured of bodies that are not apart is not known.
     const auto is_put = [](const Start::Placed& placed) { return placed.z.has_value(); };
     if (std::any_of(task.starts.front().placed.begin(), task.starts.front().placed.end(), is_put))
       return;
-    std::vector<std::size_t> begun;
-    for (std::size_t i = 0; i < task.starts.size(); ++i) {
-      if (holds(*program, task, bodies, task.starts[i])) begun.push_back(i);
+    const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
+    for (const Metric& metric : task.judged) {
+      const bool is_success = metric.name == "success";
+      if (metric.type.kind != TypeKind::kBool ||
+          (!is_success && metric.readout != plan::Readout::kOnce))
+        continue;
+      check(task, metric, is_success, bodies);
     }
-    if (begun.empty()) return;
-    // What has to be so all along begins so.
-    if (begun.size() == task.starts.size() && success->readout == plan::Readout::kAlways) return;
-    if (!said_.insert({success->span, task.starts.data()}).second) return;
-    report(task, *success, begun);
   }
 
  private:
-  // Success as a program, made once for tasks of one shape; null where it is false wherever things
+  void check(const Task& task, const Metric& metric, bool is_success,
+             const std::vector<lower::Body>& bodies) {
+    const lower::Program* program = program_of(task, metric, bodies);
+    if (program == nullptr) return;
+    std::vector<std::size_t> begun;
+    for (std::size_t i = 0; i < task.starts.size(); ++i) {
+      if (holds(*program, task, bodies, task.starts[i])) {
+        begun.push_back(i);
+      } else if (!is_success) {
+        return;  // it tells the one start from the other
+      }
+    }
+    if (begun.empty()) return;
+    // What has to be so all along begins so.
+    if (begun.size() == task.starts.size() && metric.readout == plan::Readout::kAlways) return;
+    if (!said_.insert({metric.span, task.starts.data()}).second) return;
+    report(task, metric, begun);
+  }
+
+  // A metric as a program, made once for tasks of one shape; null where it is false wherever things
   // lie apart, or cannot be lowered, which is said elsewhere.
   const lower::Program* program_of(const Task& task, const Metric& success,
                                    const std::vector<lower::Body>& bodies) {
@@ -113,24 +124,27 @@ class BegunChecker {
     return lower::holds_at_rest(program, 0, rest) == true;
   }
 
-  void report(const Task& task, const Metric& success, const std::vector<std::size_t>& begun) {
+  void report(const Task& task, const Metric& metric, const std::vector<std::size_t>& begun) {
     const bool is_all = begun.size() == task.starts.size();
     std::string which = is_all ? "" : ": ";
     for (std::size_t i = 0; !is_all && i < begun.size() && i < kMostNamed; ++i)
       which += (i == 0 ? "" : ", ") + std::to_string(begun[i]);
     if (!is_all && begun.size() > kMostNamed) which += " ..";
     const About about(reporter_, task.decl_span);
-    report_of(reporter_, Code::P0607, task, task.span,
-              "`success` of `" + task.name + "` is true before anything moves in " +
-                  (is_all ? begun.size() == 1 ? "its one start"
-                                              : "all of its " + std::to_string(begun.size()) + " starts"
-                          : std::to_string(begun.size()) + " of " +
-                                std::to_string(task.starts.size()) + " starts") +
-                  which)
-        .label(success.span, "judged by this")
-        .help(
-            "place things so that none begins so, or ask for what has to move as well: `.. and "
-            "displaced(source)`");
+    report_of(
+        reporter_, Code::P0607, task, task.span,
+        "`" + metric.name + "` of `" + task.name + "` is true before anything moves in " +
+            (is_all ? begun.size() == 1 ? "its one start"
+                                        : "all of its " + std::to_string(begun.size()) + " starts"
+                    : std::to_string(begun.size()) + " of " + std::to_string(task.starts.size()) +
+                          " starts") +
+            which)
+        .label(metric.span, "judged by this")
+        .help(metric.name == "success"
+                  ? "place things so that none begins so, or ask for what has to move as well: `.. "
+                    "and "
+                    "displaced(source)`"
+                  : "it says nothing of a policy: begin otherwise, or ask for what has to change");
   }
 
   const Model& model_;

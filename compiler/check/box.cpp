@@ -7,6 +7,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/geometry/mesh_bounds.h"
+#include "compiler/geometry/mesh_origin.h"
 
 namespace probe::sema {
 namespace {
@@ -58,8 +59,9 @@ std::string box_statement(const Bounds& bounds) {
 
 }  // namespace
 
-void check_boxes(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
-  for (const Object& object : model.objects) {
+void check_boxes(const Checked& checked, Reporter& reporter) {
+  const AssetRoot& asset_root = checked.asset_root;
+  for (const Object& object : checked.model.objects) {
     if (object.of) continue;
     const Span& decl = object.decl_span;
     const bool own_box = !object.box_span.is_none() && is_within(object.box_span, decl);
@@ -82,6 +84,10 @@ void check_boxes(const Model& model, const AssetRoot& asset_root, Reporter& repo
       found.fix_by("add `" + box + "`",
                    {object.mesh.span.file, object.mesh.span.end, object.mesh.span.end}, "; " + box);
     }
+    const std::string text(checked.sources.file(object.mesh.span.file).name());
+    found.note("the mesh is " + origin_of(asset_root, text, object.mesh.text));
+    if (!file_beside(text, object.mesh.text).empty())
+      found.help(pack_advice(text, object.mesh.text));
     if (!is_centred(*mesh))
       found.note("the corners of the mesh are " + box.substr(4) + " in its own frame");
   }

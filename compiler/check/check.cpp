@@ -17,6 +17,9 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_starts(model, checked.asset_root, reporter);
   if (reporter.is_stopped()) return;
   if (!reporter.depth.is_immediate) check_buried(model, checked.asset_root, reporter);
+  check_repeated(model, reporter);
+  check_wide(model, reporter);
+  check_horizons(model, reporter);
   check_metrics(model, reporter);
   if (!reporter.depth.is_immediate) check_begun(model, checked.asset_root, reporter);
   check_expectations(model, reporter);
@@ -24,7 +27,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   check_photos(model, reporter);
   check_tags(model, reporter);
   check_magnitudes(checked.symbols, reporter);
-  if (!reporter.depth.is_immediate) check_boxes(model, checked.asset_root, reporter);
+  if (!reporter.depth.is_immediate) check_boxes(checked, reporter);
   check_unused(checked, reporter);
 }
 

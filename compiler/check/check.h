@@ -49,6 +49,9 @@ void check_named(const Model& model, Reporter& reporter);          // P0201 of m
 void check_starts(const Model& model, const AssetRoot& asset_root,
                   Reporter& reporter);                       // P0501, P0502, P0505, P1302, P1511
 void check_buried(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0507
+void check_repeated(const Model& model, Reporter& reporter);  // P1512
+void check_wide(const Model& model, Reporter& reporter);      // P1514
+void check_horizons(const Model& model, Reporter& reporter);  // P1513
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
 void check_begun(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0607
 // What of it only fingers or a gripper have, such as "`grip`"; empty where nothing is.
@@ -60,8 +63,7 @@ void check_samples(const Model& model, Reporter& reporter);         // P0706
 void check_photos(const Model& model, Reporter& reporter);          // P0304 of cameras that jitter
 void check_tags(const Model& model, Reporter& reporter);            // P0705
 void check_magnitudes(const Symbols& symbols, Reporter& reporter);  // P0303
-void check_boxes(const Model& model, const AssetRoot& asset_root,
-                 Reporter&);                                    // P0506
+void check_boxes(const Checked& checked, Reporter& reporter);    // P0506
 void check_unused(const Checked& checked, Reporter& reporter);  // P0205
 
 }  // namespace probe::sema

@@ -30,10 +30,17 @@ void check_task(const Model& model, const Task& task, Reporter& reporter) {
   // What is chosen of a layout is not all that it has.
   if (!layout.expect || !task.clear.empty() || *layout.expect == task.starts.size()) return;
   const About about(reporter, task.decl_span);
-  report_of(reporter, Code::P0504, task, layout.expect_span,
-            "`" + task.name + "` has " + std::to_string(task.starts.size()) + " episodes" +
-                factors(task.starts) + ", not " + std::to_string(*layout.expect))
-      .label(task.layout_span, "used here");
+  Diagnostic& said =
+      report_of(reporter, Code::P0504, task, layout.expect_span,
+                "`" + task.name + "` has " + std::to_string(task.starts.size()) + " episodes" +
+                    factors(task.starts) + ", not " + std::to_string(*layout.expect));
+  said.label(task.layout_span, "used here");
+  if (layout.like == LayoutId::kNone ||
+      model.layouts[layout.like].expect_span != layout.expect_span)
+    return;
+  said.help("`" + layout.name + "` copies what `" + model.layouts[layout.like].name +
+            "` expects: write `expect " + std::to_string(task.starts.size()) +
+            " episodes` into it");
 }
 
 void check_suite(const Model& model, const Suite& suite, Reporter& reporter) {
@@ -47,12 +54,20 @@ void check_suite(const Model& model, const Suite& suite, Reporter& reporter) {
     return task.complete || task.abstract;
   });
   if (!suite.expect || !is_whole) return;
-  std::uint64_t episodes = 0;
-  for (const TaskId id : suite.members) episodes += suite.starts_of(id, model.tasks[id]).size();
+  std::uint64_t episodes = 0, variants = 0;
+  for (const TaskId id : suite.members) {
+    const std::size_t of_task = suite.starts_of(id, model.tasks[id]).size();
+    episodes += of_task;
+    if (model.tasks[id].baseline != TaskId::kNone) variants += of_task;
+  }
   if (suite.expect->tasks == suite.members.size() && suite.expect->episodes == episodes) return;
-  reporter.report(Code::P0504, suite.expect->span,
-                  "suite `" + suite.name + "` has " + std::to_string(suite.members.size()) +
-                      " tasks and " + std::to_string(episodes) + " episodes");
+  Diagnostic& said =
+      reporter.report(Code::P0504, suite.expect->span,
+                      "suite `" + suite.name + "` has " + std::to_string(suite.members.size()) +
+                          " tasks and " + std::to_string(episodes) + " episodes");
+  if (variants > 0 && variants < episodes)
+    said.point(std::to_string(variants) + " of variants, " + std::to_string(episodes - variants) +
+               " of what they are compared with");
 }
 
 }  // namespace

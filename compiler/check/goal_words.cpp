@@ -42,14 +42,37 @@ std::optional<std::string> lack_of(Told& told, const GoalWords& one) {
   return std::nullopt;
 }
 
+// What a task that means them would write; empty where there is no telling.
+std::string_view help_for(Asks asks) {
+  switch (asks) {
+    case Asks::kAmong:
+      return "where the words tell which thing is meant, declare them as its phrase, `phrase amid spatial "
+             "\"..\" means between(..)`, and say `refer source as amid`: that is proved in every start";
+    case Asks::kThen:
+    case Asks::kAfter:
+      return "`put_in_order(source, target, helper, target)` of std/place.probe asks for an order";
+    case Asks::kEach:
+      return "ask for each: `.. and on_top_of(helper, target)`, or `all g in goods: on_top_of(g, target)`";
+    case Asks::kOpens:
+    case Asks::kCloses:
+    case Asks::kSides:
+    case Asks::kSpares:
+    case Asks::kLeaves:
+      break;
+  }
+  return {};
+}
+
 // Words of the table that success is not about.
 bool says_other_goal(const Model& model, const Task& task, Told& told, Reporter& reporter) {
   for (const GoalWords& one : told.words()) {
     const std::optional<std::string> lack = lack_of(told, one);
     if (!lack) continue;
-    report_of(reporter, Code::P1202, task, task.say_span,
-              "`" + task.name + "` says \"" + std::string(one.words) + "\" and " + *lack)
-        .label(model.metrics[task.metrics].span, "judged by these");
+    Diagnostic& said = report_of(
+        reporter, Code::P1202, task, task.say_span,
+        "`" + task.name + "` says \"" + std::string(one.words) + "\" and " + *lack);
+    said.label(model.metrics[task.metrics].span, "judged by these");
+    if (const std::string_view help = help_for(one.asks); !help.empty()) said.help(std::string(help));
     return true;
   }
   return false;

@@ -129,8 +129,18 @@ SetReader::Members SetReader::read_node(const syntax::File& file, const Span&,
     }
     return members;
   }
+  const std::size_t said = diagnostics_->size();
   const auto found = context_.symbols.sets.find(set.name, *diagnostics_);
-  if (!found) return {};
+  if (!found) {
+    const auto is_it = [&](const Task& task) { return task.name == set.name.text; };
+    if (diagnostics_->size() > said && std::ranges::any_of(context_.model.tasks, is_it)) {
+      const std::string braced = "{ " + std::string(set.name.text) + " }";
+      Diagnostic& unknown = (*diagnostics_)[said];
+      unknown.point("a task: `" + braced + "` is the set of it")
+          .fix_by("write `" + braced + "`", set.name.span, braced);
+    }
+    return {};
+  }
   if (context_.levels > kMaxLevels && states_[*found] == kNew) {
     report_levels(*diagnostics_, set.name.span);
     return {};

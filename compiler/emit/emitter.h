@@ -110,7 +110,7 @@ class Emitter {
 
   // P0603 at once; P0602 when a metric is constant in every program and for every horizon that has
   // it: over the distractors of a task without any it may be.
-  void note_constants(std::uint32_t program, std::uint64_t horizon, double control_hz,
+  void note_constants(const sema::Task& task, std::uint32_t program, std::uint64_t horizon, double control_hz,
                       const lower::Room& room);
   void report_constants();
   bool needs(const sema::Task& task, const AssetOwner& owner) const;
@@ -181,6 +181,7 @@ class Emitter {
   std::set<std::tuple<std::uint32_t, std::uint64_t, double, lower::Room>> noted_;
   struct Constant {
     lower::ProgramMetric metric;
+    const sema::Task* task = nullptr;  // the first that is judged by it
     bool varies = false;
     std::set<std::string> values;
   };

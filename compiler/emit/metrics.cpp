@@ -28,7 +28,7 @@ std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
     known = programs_by_shape_.emplace(std::move(shape), keep_program(std::move(*program))).first;
   }
   // What is constant depends on how long an episode is.
-  note_constants(known->second, steps,
+  note_constants(task, known->second, steps,
                  model_.robots[model_.scenes[task.scene].robot].control_hz,
                  lower::room_of(model_, task));
   return known->second;
@@ -64,7 +64,7 @@ std::uint32_t Emitter::keep_program(lower::Program program) {
   return size32(programs_) - 1;
 }
 
-void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double control_hz,
+void Emitter::note_constants(const sema::Task& task, std::uint32_t index, std::uint64_t horizon, double control_hz,
                              const lower::Room& room) {
   if (!noted_.insert({index, horizon, control_hz, room}).second) return;
   const lower::Program& program = programs_[index];
@@ -83,6 +83,7 @@ void Emitter::note_constants(std::uint32_t index, std::uint64_t horizon, double 
     // What nothing is in wherever the metric is used.
     if (constant.values.empty() && !constant.varies) {
       constant.metric = program.metrics[i];
+      constant.task = &task;
     } else {
       std::erase_if(constant.metric.empty,
                     [&](const Span& set) { return !program.metrics[i].empty.contains(set); });
@@ -111,6 +112,14 @@ void Emitter::report_constants() {
     if (brings)
       said.point(value == "true" ? "it comes after the first step" : "it never comes in time");
     for (const Span& set : constant.metric.empty) said.label(set, "nothing is in it");
+    if (brings || constant.metric.empty.empty()) continue;
+    // Another file's metric, which measures nothing here, says nothing wrong.
+    const std::string& task = constant.task->name;
+    if (!(constant.task->file == constant.metric.span.file) && constant.metric.name != "success")
+      said.severity = Severity::kWarning;
+    said.help("`" + task + "` is judged by it: give it what is asked about (`distractors spoon`), say " +
+              "what it measures instead (`set " + constant.metric.name +
+              " = ..`), or take metrics that do not ask");
   }
 }
 

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "compiler/emit/emitter.h"
+#include "compiler/geometry/mesh_origin.h"
 
 namespace probe::emit {
 
@@ -56,6 +57,14 @@ void Emitter::report_misses(const std::vector<TaskId>& chosen) {
     // Who names a folder of one mug lacks all else.
     const std::string advice = options_.asset_root.advice(miss.path);
     if (!advice.empty() && advised.insert(advice).second) said.help(advice);
+    // "objects/mug/visual.glb"
+    constexpr std::string_view kObjects = "objects/";
+    if (!advice.empty() || !miss.path.starts_with(kObjects)) continue;
+    const std::size_t name = kObjects.size();
+    const std::string mesh = miss.path.substr(name, miss.path.rfind('/') - name);
+    const std::string text(sources_.file(miss.span.file).name());
+    if (const std::string pack = sema::pack_advice(text, mesh); advised.insert(pack).second)
+      said.help(pack);
   }
 }
 

@@ -11,7 +11,9 @@ namespace {
 
 // Of these a text cannot be searched for what there is: they stand in other files, or in none.
 bool tells_all(std::string_view kind) {
-  constexpr std::string_view kKinds[] = {"link", "object", "scene", "fixture", "joint"};
+  constexpr std::string_view kKinds[] = {"link",   "object", "scene", "fixture",
+                                         "joint",  "camera", "light", "layout",
+                                         "phrase", "set",    "suite"};
   return std::ranges::find(kKinds, kind) != std::end(kKinds) || kind.starts_with("part ") ||
          kind.starts_with("joint of ");
 }

@@ -56,18 +56,22 @@ std::string corner(const Vec3& p) {
                      rounded(p.z()));
 }
 
-// Things on a table are between a grain and the table.
+// Things on a table are between a grain and the table; empty of one that is.
+std::string size_doubt(const PackOptions& options, const Vec3& size) {
+  constexpr double kLargest = 2, kSmallest = 0.002;  // m
+  const double longest = size.maxCoeff();
+  if (longest <= kLargest && longest >= kSmallest) return "";
+  const double factor = longest > kLargest ? (longest > 20 ? 0.001 : 0.01) : 1000;
+  return fmt::format("it is {:.3g} m long: with `--scale {:g}` it would be {:.3g} cm", longest,
+                     options.scale * factor, 100 * longest * factor);
+}
+
 std::vector<std::string> doubts_of(const PackOptions& options, const Vec3& size,
                                    const CollisionFile& felt) {
-  constexpr double kLargest = 2, kSmallest = 0.002;  // m
   constexpr double kFilled = 0.25;
   std::vector<std::string> doubts;
-  const double longest = size.maxCoeff();
-  if (longest > kLargest || longest < kSmallest) {
-    const double factor = longest > kLargest ? (longest > 20 ? 0.001 : 0.01) : 1000;
-    doubts.push_back(fmt::format("it is {:.3g} m long: with `--scale {:g}` it would be {:.3g} cm",
-                                 longest, options.scale * factor, 100 * longest * factor));
-  }
+  if (std::string doubt = size_doubt(options, size); !doubt.empty())
+    doubts.push_back(std::move(doubt));
   if (felt.filled > kFilled && !options.hollow) {
     doubts.push_back(
         fmt::format("what is felt is convex and fills its hollows ({:.0f} % of it is no part of the "
@@ -86,7 +90,8 @@ std::string text_of(const PackOptions& options, const Extent& extent) {
   std::replace(words.begin(), words.end(), '_', ' ');
   return fmt::format(
       "object {} {{\n  mesh \"{}\"\n  box {} .. {}\n  density 500kg/m3  # a guess, as is the next "
-      "line\n  friction 0.5\n  unseen\n  name \"{}\"\n}}\n",
+      "line\n  friction 0.5\n  rest yaw 0deg, yaw 90deg  # how it lies in a layout that turns things\n"
+      "  unseen\n  name \"{}\"\n}}\n",
       name, folder.filename().string(), corner(extent.min), corner(extent.max),
       words);
 }
@@ -141,6 +146,10 @@ Result<Packed> pack_asset(const PackOptions& options) {
   PROBE_ASSIGN(const CollisionFile felt,
                convert_collision(felt_from, scale, limits, felt_from == options.from, place,
                                  options.hollow));
+  if (options.refuses_odd_size) {
+    if (const std::string doubt = size_doubt(options, seen.extent.size()); !doubt.empty())
+      return Failure{Fault::kUsage, doubt + "; `--scale 1` packs it as it is", options.from};
+  }
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
   PROBE_TRY(out.write("visual.glb", seen.glb, options.from));
   PROBE_TRY(out.write("collision.obj", felt.obj, felt_from));

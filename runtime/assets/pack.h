@@ -16,6 +16,7 @@ struct PackOptions {
   double scale = 1;       // 0.001 for millimetres; not for a URDF, which says its own
   std::string up = {};    // "x", "y", "z": which axis of an OBJ or STL points up; empty: z
   bool hollow = false;    // what is felt leaves the inside of a cup free (hollow.h)
+  bool refuses_odd_size = false;  // what is no thing of a table's: nobody said a scale
 };
 
 struct Packed {

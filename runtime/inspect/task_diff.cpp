@@ -154,7 +154,8 @@ std::string diff_text(const Json& diff) {
   const Json sides[] = {diff["left"], diff["right"]};
   for (const auto& [key, left] : sides[0].items()) {
     if (key == "roles" || is_of_some(key)) continue;
-    add(key, left, sides[1][key]);
+    // Of the program that judges; the words are above.
+    add(key == "instructions" ? "judge's ops" : key, left, sides[1][key]);
     if (key != "target") continue;
     // Other roles of either side stand below the two that most tasks have.
     const auto filled = [&](std::size_t side, const std::string& role) {

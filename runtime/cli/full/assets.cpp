@@ -1,6 +1,9 @@
 // vlaprobe assets import, vlaprobe assets pack, vlaprobe assets mujoco
 #include <fmt/format.h>
 
+#include <cmath>
+#include <limits>
+
 #include "runtime/assets/import.h"
 #include "runtime/assets/mujoco_folder.h"
 #include "runtime/assets/pack.h"
@@ -10,6 +13,8 @@
 
 namespace probe::cli {
 namespace {
+
+constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 
 struct AssetsArguments {
   assets::ImportOptions options;
@@ -38,6 +43,7 @@ int import_verb(AssetsArguments& arguments) {
 
 void add_pack(Verb assets, int& exit) {
   auto options = std::make_shared<assets::PackOptions>();
+  options->scale = kUnsaid;
   Verb pack = assets.add_subcommand("pack", "a mesh or a robot of yours as one asset");
   pack.footer(
       "reads glb, gltf, dae, obj, stl, urdf; z is up in the result; prints the box to write\n"
@@ -52,6 +58,10 @@ void add_pack(Verb assets, int& exit) {
                 "what is felt leaves the inside of a cup, bowl or tray free");
   pack.refuse_empty_values();
   pack.callback([options, &exit] {
+    if (std::isnan(options->scale)) {
+      options->scale = 1;
+      options->refuses_odd_size = true;
+    }
     const auto packed = assets::pack_asset(*options);
     if (!packed) {
       exit = report(packed.failure());

@@ -76,6 +76,24 @@ void print_json(const std::vector<rejudge::Reading>& readings, const plan::Plan&
   put("{}\n", json.dump(1));
 }
 
+// "7 / 24" or a mean, of a metric that is in the new rule alone.
+std::string after_alone(const rejudge::RejudgeReport& report, const std::string& name) {
+  std::size_t episodes = 0;
+  double sum = 0;
+  bool is_bool = true;
+  for (const store::ResultRow& row : report.rows) {
+    if (row.invalid) continue;
+    const auto found = std::ranges::find(row.metrics, name, &store::MetricValue::name);
+    if (found == row.metrics.end()) continue;
+    ++episodes;
+    sum += found->value;
+    is_bool = found->is_bool;
+  }
+  if (episodes == 0) return "judged";
+  if (is_bool) return fmt::format("{:.0f} / {}", sum, episodes);
+  return fmt::format("{:.4g}", sum / static_cast<double>(episodes));
+}
+
 void print_table(const rejudge::RejudgeReport& report) {
   std::size_t width = 6;
   for (const rejudge::MetricChange& m : report.metrics) width = std::max(width, m.name.size());
@@ -83,7 +101,7 @@ void print_table(const rejudge::RejudgeReport& report) {
   for (const rejudge::MetricChange& m : report.metrics) {
     if (m.episodes == 0) {
       put("{:<{}}  {:>9}  {:>9}\n", m.name, width, m.only_before > 0 ? "judged" : "-",
-          m.only_after > 0 ? "judged" : "-");
+          m.only_after > 0 ? after_alone(report, m.name) : "-");
     } else if (m.is_bool) {
       put("{:<{}}  {:>4} / {:<2}  {:>4} / {:<2}  {:>6}  {:>6}\n", m.name, width, m.before,
           m.episodes, m.after, m.episodes, m.lost, m.gained);

@@ -120,6 +120,7 @@ int why_verb(const WhyArguments& arguments) {
     put("\n");
     print_metric(metric);
   }
+  if (!why->metrics.empty()) say("`>`: it made the metric what it is; `|`: it did not\n");
   return kFine;
 }
 

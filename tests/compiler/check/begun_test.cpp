@@ -70,3 +70,18 @@ TEST_CASE("success that holds in all starts is told as well, but for what has to
       "task t like red_on_tray { layout one; metrics m; say \"use {the source} and {the target}\" }\n");
   CHECK_MESSAGE(alone->said().find("before anything moves in ") != std::string::npos, alone->said());
 }
+
+TEST_CASE("what is asked whether it was ever so, and is so in every start, is told") {
+  const auto said = [](const std::string& more) {
+    return test::analyze_with_suite(std::string(test::kChest) +
+                                    "metrics m { success = at end moved_xy(source) > 5cm; seen = once "
+                                    "travel(chest.slide) > 3cm }\n"
+                                    "task t like red_on_tray { metrics m; scene room; say \"move {the "
+                                    "source}\"" + more + " }\n")
+        ->said();
+  };
+  CHECK_MESSAGE(said("").find("`seen` of `t` is true before anything moves in all of its 24 starts") !=
+                    std::string::npos,
+                said(""));
+  CHECK(said("; start chest.slide 0cm").find("`seen`") == std::string::npos);
+}

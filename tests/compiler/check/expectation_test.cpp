@@ -27,3 +27,21 @@ TEST_CASE("a suite that expects other numbers is told the real ones") {
   CHECK(analyze_with_suite("suite s { tasks tasks; seeds 1; expect 1 tasks, 24 episodes }")
             ->codes() == "");
 }
+
+TEST_CASE("what a copied layout expects is said of the copy") {
+  const auto a = analyze_with_suite(
+      "layout wide like pairs { expect 24 episodes }\n"
+      "layout narrow like wide { cells spots = grid 1 x 2 at (0cm, 0cm) spread (0cm, 10cm) }\n"
+      "task t like red_on_tray { layout narrow }");
+  REQUIRE_MESSAGE(a->codes() == "P0504", a->said());
+  REQUIRE(a->diagnostics.items().front().helps.size() == 1);
+  CHECK(a->diagnostics.items().front().helps[0] ==
+        "`narrow` copies what `wide` expects: write `expect 4 episodes` into it");
+}
+
+TEST_CASE("a task where a set is asked for gets its braces") {
+  const auto a = analyze_with_suite("suite s { tasks red_on_tray; seeds 1 }");
+  REQUIRE_MESSAGE(a->codes() == "P0201", a->said());
+  REQUIRE(a->diagnostics.items().front().fix);
+  CHECK(a->diagnostics.items().front().fix->replacements[0].text == "{ red_on_tray }");
+}

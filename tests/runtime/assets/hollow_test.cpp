@@ -136,8 +136,26 @@ TEST_CASE("assets pack says what is probably not meant, and the lines that decla
   CHECK(packed->made.find("17 convex parts") != std::string::npos);
   CHECK(packed->text ==
         "object my_mug {\n  mesh \"my-mug\"\n  box (-4cm, -4cm, 0cm) .. (4cm, 4cm, 10cm)\n"
-        "  density 500kg/m3  # a guess, as is the next line\n  friction 0.5\n  unseen\n"
+        "  density 500kg/m3  # a guess, as is the next line\n  friction 0.5\n"
+        "  rest yaw 0deg, yaw 90deg  # how it lies in a layout that turns things\n  unseen\n"
         "  name \"my mug\"\n}\n");
+}
+
+TEST_CASE("a size that no thing on a table has is refused where nobody said a scale") {
+  TemporaryFolder folder;
+  scene::TriangleSoup large = cup();
+  for (Vec3& p : large.vertices) p *= 1000;  // millimetres
+  std::ofstream(folder / "mug.obj") << obj(large);
+  PackOptions options{folder / "mug.obj", folder / "a/mug", "", 1};
+  options.refuses_odd_size = true;
+  CHECK(to_text(pack_asset(options).failure())
+            .find("it is 100 m long: with `--scale 0.001` it would be 10 cm; `--scale 1` packs it as "
+                  "it is") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(options.to));
+  options.scale = 0.001;
+  CHECK(pack_asset(options).ok());
+  CHECK(to_text(pack_asset(options).failure()).find("remove it, or name another with -o") !=
+        std::string::npos);
 }
 
 TEST_CASE("--up turns the axis of an obj upwards, and is refused where the file says its own") {

@@ -161,3 +161,32 @@ TEST_CASE("an object that a metric names is looked for in the scene, and is told
   const Outcome there = check("towel", "; distractors towel");
   CHECK_MESSAGE(!contains(there.err, "error["), there.err);
 }
+
+TEST_CASE("a copied metric that measures nothing here is a warning with what helps") {
+  Sandbox box;
+  write_file(box / "bare.probe",
+             "use \"suite/intact.probe\"\n"
+             "task bare like on_table { source carrot; target plate; metrics put_clean }\n"
+             "suite bare_alone { tasks { bare }; seeds 1 }\n");
+  const Outcome check = box.vlaprobe("check bare.probe");
+  CHECK(check.exit == 0);
+  CHECK_MESSAGE(contains(check.err, "warning[P0602]: metric `wrong` is always false"), check.err);
+  CHECK(contains(check.err, "`bare` is judged by it"));
+}
+
+TEST_CASE("a mesh that is a file, or a name that the program's own assets have, is told") {
+  Sandbox box;
+  const std::string object =
+      "  box (-4cm, -4cm, 0cm) .. (4cm, 4cm, 9cm); density 500kg/m3; friction 0.5; unseen; name \"cup\" }\n"
+      "task t like on_table { source cup; target plate }\nsuite mine { tasks { t }; seeds 1 }\n";
+  write_file(box / "mug.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  // There is a mug among the program's own.
+  write_file(box / "a.probe", "use \"suite/intact.probe\"\nobject cup {\n  mesh \"mug\"\n" + object);
+  const Outcome own = box.vlaprobe("check a.probe");
+  CHECK_MESSAGE(contains(own.err, "the mesh is `objects/mug` of the program's own assets"), own.err);
+  CHECK_MESSAGE(contains(own.err, "vlaprobe assets pack mug.obj -o assets/objects/my_mug"), own.err);
+  write_file(box / "b.probe", "use \"suite/intact.probe\"\nobject cup {\n  mesh \"mug.obj\"\n" + object);
+  const Outcome missing = box.vlaprobe("check b.probe");
+  CHECK(missing.exit == 1);
+  CHECK_MESSAGE(contains(missing.err, "vlaprobe assets pack mug.obj -o assets/objects/my_mug"), missing.err);
+}

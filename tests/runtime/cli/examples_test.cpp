@@ -2,6 +2,7 @@
 // first task do what the page says.
 #include <doctest/doctest.h>
 
+#include <regex>
 #include <sstream>
 #include <vector>
 
@@ -25,7 +26,60 @@ std::string first_block(const std::string& page, const std::string& kind) {
   return page.substr(at, page.find("```", at) - at);
 }
 
+// All blocks of a kind on a page.
+std::vector<std::string> blocks(const std::string& page, const std::string& kind) {
+  const std::string open = "```" + kind + "\n";
+  std::vector<std::string> out;
+  for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
+    at += open.size();
+    out.push_back(page.substr(at, page.find("```", at) - at));
+  }
+  return out;
+}
+
+// The tasks that a text writes out; those of a `derive` are other words or other lights of one of
+// them.
+std::vector<std::string> tasks_of(const std::string& text) {
+  static const std::regex kDeclared(R"(^(?:task|variant) (\w+))");
+  static const std::regex kListed(R"(^  (\w+)\s*\{)");
+  std::vector<std::string> names;
+  std::istringstream lines(text);
+  bool in_list = false;
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch found;
+    if (std::regex_search(line, found, kDeclared) || (in_list && std::regex_search(line, found, kListed)))
+      names.push_back(found[1]);
+    if (line.starts_with("variants of ")) in_list = true;
+    if (line.starts_with("}")) in_list = false;
+  }
+  return names;
+}
+
 }  // namespace
+
+// What a page shows is copied; a task that nobody can do teaches nothing.
+TEST_CASE("the expert does every task that the pages of the language write out") {
+  Sandbox box;
+  std::size_t done = 0;
+  for (const char* page : {"/dsl/reference.md", "/dsl/std/README.md"}) {
+    for (const std::string& text : blocks(read_file(std::string(VLAPROBE_SOURCE_DIR) + page), "probe")) {
+      std::string names;
+      for (const std::string& name : tasks_of(text)) names += (names.empty() ? "" : ", ") + name;
+      if (names.empty()) continue;
+      const bool is_whole = contains(text, "use \"");
+      write_file(box / "shown.probe", (is_whole ? "" : "use \"suite/intact.probe\"\n") + text +
+                                          "\nsuite shown_here { tasks { " + names + " }; seeds 0 }\n");
+      const std::string out = "shown_" + std::to_string(done);
+      const Outcome run = box.vlaprobe("run shown.probe --suite shown_here --policy expert "
+                                       "--episodes 0-0 --jobs 2 -o " + out);
+      CHECK_MESSAGE(run.exit == 0, names, ": ", run.err);
+      for (const auto& row : probe::Json::parse(box.vlaprobe("results " + out + " --json").out))
+        CHECK_MESSAGE(row["success"] == true, row.dump(1));
+      ++done;
+    }
+  }
+  CHECK(done >= 20);
+}
 
 TEST_CASE("every example runs: the first start of each of its tasks, with the policy that rests") {
   Sandbox box;

@@ -26,7 +26,7 @@ TEST_CASE("a reworded task has the same starts and the same judge") {
   horizon       60                                         60
   metrics       success, intention, grasp, steady, moved,  success, intention, grasp, steady, moved,
                 wrong                                      wrong
-  instructions  83                                         83
+  judge's ops   83                                         83
   episodes      24                                         24
 
 axes       language.appearance
