@@ -50,10 +50,7 @@ std::optional<Goal::Bearing> ClauseFacts::bearing(ObjectId thing, ObjectId place
     const ObjectId other = two.first == thing ? two.second : two.first;
     if (!is_same_place(other, place)) continue;
     if (!found) found.emplace();
-    found->near = found->near || one.near;
-    found->apart = found->apart || one.apart;
-    found->other = found->other || one.other;
-    found->asked = found->asked || one.asked;
+    found->add(one);
   }
   return found;
 }

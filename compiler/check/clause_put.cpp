@@ -176,10 +176,7 @@ Lack moved_lack(const ClauseFacts& facts, const std::vector<ObjectId>& moved,
       const auto one = facts.bearing(thing, place);
       if (!one) continue;
       is_measured = true;
-      all.near = all.near || one->near;
-      all.apart = all.apart || one->apart;
-      all.other = all.other || one->other;
-      all.asked = all.asked || one->asked;
+      all.add(*one);
     }
   }
   if (is_measured) {

@@ -61,7 +61,7 @@ Lack either_lack(const ClauseFacts& facts, const Clause& clause) {
            !is_each_asked(facts, things);
   };
   for (const Things& two : facts.goal.either) {
-    if (says_each(two)) return "succeeds with one of the two (`or`, not `and`)";
+    if (says_each(two)) return content_with_either(two);
   }
   // "The cubes", "all three drawers".
   const auto says_them = [&](const Things& things) {
@@ -72,7 +72,7 @@ Lack either_lack(const ClauseFacts& facts, const Clause& clause) {
   };
   for (const Things& some : facts.goal.one_of) {
     if (says_each(some) || (says_them(some) && !is_each_asked(facts, some)))
-      return "succeeds with one of " + std::to_string(some.size()) + " (`any`, not `all`)";
+      return content_with_any(some);
   }
   return std::nullopt;
 }

@@ -401,6 +401,13 @@ Goal goal_of(const Model& model, const Task& task) {
   return goal;
 }
 
+std::string content_with_any(const Things& of) {
+  return "succeeds with one of " + std::to_string(of.size()) + " (`any`, not `all`)";
+}
+std::string content_with_either(const Things& of) {
+  return "succeeds with one of " + std::to_string(of.size()) + " (`or`, not `and`)";
+}
+
 bool is_measured(const Model& model, const Task& task, ObjectId thing) {
   Goal goal;
   Reader reader(model, task, goal);

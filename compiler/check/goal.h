@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,12 @@ struct Goal {
   // it holds, so that they are apart, or otherwise. Denied conditions alone: not `asked`.
   struct Bearing {
     bool near = false, apart = false, other = false, asked = false;
+    void add(const Bearing& one) {
+      near = near || one.near;
+      apart = apart || one.apart;
+      other = other || one.other;
+      asked = asked || one.asked;
+    }
   };
   std::map<std::pair<ObjectId, ObjectId>, Bearing> bearings;
   // What metrics beside success measure of one another.
@@ -69,6 +76,11 @@ struct Goal {
 
 // In: a complete task. Bounded by the text: a predicate is looked at once for what it is given.
 Goal goal_of(const Model& model, const Task& task);
+
+// What is said of a goal that is content with one of several: "succeeds with one of 3 (`any`, not
+// `all`)".
+std::string content_with_any(const Things& of);
+std::string content_with_either(const Things& of);
 
 // Whether some metric of the task may measure something of a thing: by name, by role, or through a
 // set that it may be in.

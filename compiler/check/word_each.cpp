@@ -37,13 +37,12 @@ std::optional<std::string> each_word_lack(Told& told, const GoalWords& one) {
         told.said().words.begin(), told.said().words.end(), [&](const Said::Word& word) {
           return std::includes(word.of.begin(), word.of.end(), things.begin(), things.end());
         });
-    if (is_said && !is_each_asked(told, things))
-      return "succeeds with one of " + std::to_string(things.size()) + " (`any`, not `all`)";
+    if (is_said && !is_each_asked(told, things)) return content_with_any(things);
   }
   for (const Things& two : told.goal().either) {
     const bool is_said = std::all_of(two.begin(), two.end(),
                                      [&](ObjectId thing) { return told.said().first(thing); });
-    if (is_said && !is_each_asked(told, two)) return "succeeds with one of 2 (`or`, not `and`)";
+    if (is_said && !is_each_asked(told, two)) return content_with_either(two);
   }
   return one.words == "both" ? both_lack(told) : std::nullopt;
 }

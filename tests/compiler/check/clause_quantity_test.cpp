@@ -42,7 +42,7 @@ TEST_CASE("all drawers are all, one of them is any, and two that are named are b
         kBegins + "`desk.low`, which its success does not measure");
   CHECK(told_of_drawers("(" + top + " and " + low + ")", "open the top and the low drawer") == "");
   CHECK(told_of_drawers("(" + top + " or " + low + ")", "open the top drawer and the low drawer") ==
-        kBegins + "\"open the top drawer and the low drawer\" and succeeds with one of the two (`or`, not `and`)");
+        kBegins + "\"open the top drawer and the low drawer\" and succeeds with one of 2 (`or`, not `and`)");
   CHECK(told_of_drawers("(any p in {desk.top, desk.low}: far_open(p))", "open the top drawer and the low drawer") ==
         kBegins + "\"open the top drawer and the low drawer\" and succeeds with one of 2 (`any`, not `all`)");
   CHECK(told_of_drawers("(" + top + " and " + low + ")", "open the top drawer or the low drawer") ==
@@ -98,7 +98,7 @@ TEST_CASE("of two either, or both") {
   CHECK(told_of_two(either, words) == "");
   CHECK(told_of_two(either, "put one of {the source} and {the helper} on {the target}") == "");
   CHECK(told_of_two(either, "put {the source} and {the helper} on {the target}") ==
-        kBegins + "\"put the cube and the orange on the tray\" and succeeds with one of the two (`or`, not `and`)");
+        kBegins + "\"put the cube and the orange on the tray\" and succeeds with one of 2 (`or`, not `and`)");
 }
 
 TEST_CASE("what is done first or last is so in success") {
