@@ -117,8 +117,12 @@ struct Magnitudes {
   void operator()(const syntax::GripStmt& stmt) { check(stmt.open, kGrip, "a finger's way"); }
   void operator()(const syntax::MountStmt& stmt) { point(stmt.at, kHeight, "a camera's place"); }
   void operator()(const syntax::SceneRobotStmt& stmt) {
-    point(stmt.at, kHeight, "a robot's place");
+    if (!stmt.at) return;
+    point(*stmt.at, kHeight, "a robot's place");
     angle(stmt.yaw);
+  }
+  void operator()(const syntax::TaskSceneStmt& stmt) {
+    for (const syntax::SceneStmt& one : stmt.body) std::visit(*this, one);
   }
   void operator()(const syntax::SurfaceStmt& stmt) {
     check(stmt.height, kHeight, "the height of a surface");

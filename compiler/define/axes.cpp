@@ -5,6 +5,7 @@
 
 #include "compiler/define/fixture.h"
 #include "compiler/define/motion.h"
+#include "compiler/define/replaced.h"
 #include "compiler/define/role.h"
 #include "compiler/define/starts.h"
 #include "compiler/define/task.h"
@@ -323,19 +324,20 @@ class Comparison {
   bool moves(plan::Axis axis) const {
     switch (axis) {
       case plan::Axis::kObjectSource:
-        return task_.source != baseline_.source;
+        return !is_same(task_.source, baseline_.source);
       case plan::Axis::kObjectTarget:
-        return task_.target != baseline_.target;
+        return !is_same(task_.target, baseline_.target);
       case plan::Axis::kObjectOther: {
         if (task_.others.empty() && baseline_.others.empty()) return false;
         for (std::size_t i = 0; i < model_.roles.size(); ++i) {
-          if (other_moves(task_, baseline_, model_.roles.id(i))) return true;
+          if (other_moves(model_, task_, baseline_, model_.roles.id(i))) return true;
         }
         return false;
       }
       case plan::Axis::kDistractors:
         return !std::ranges::is_permutation(task_.distractors, baseline_.distractors) ||
-               !std::ranges::is_permutation(task_.part_distractors, baseline_.part_distractors);
+               !std::ranges::is_permutation(task_.part_distractors,
+                                            seen_from(task_, baseline_.part_distractors));
       case plan::Axis::kLanguageAction:
         return action_moves_;
       case plan::Axis::kLanguageNegation:
@@ -388,6 +390,14 @@ class Comparison {
 
  private:
   const Scene& scene(const Task& task) const { return model_.scenes[task.scene]; }
+  // A drawer of the cabinet that stands in place of the baseline's is that drawer.
+  bool is_same(ObjectId here, ObjectId there) const {
+    return here == standing_for(model_, scene(task_), there);
+  }
+  std::vector<ObjectId> seen_from(const Task& task, std::vector<ObjectId> things) const {
+    for (ObjectId& thing : things) thing = standing_for(model_, scene(task), thing);
+    return things;
+  }
 
   bool phrase_moves(plan::Axis axis) const {
     if (task_.refer.empty() && baseline_.refer.empty()) return false;
@@ -418,9 +428,11 @@ class Comparison {
 
 }  // namespace
 
-bool other_moves(const Task& task, const Task& baseline, RoleId role) {
-  return role != RoleId::kSource && role != RoleId::kTarget &&
-         task.objects_in(role) != baseline.objects_in(role);
+bool other_moves(const Model& model, const Task& task, const Task& baseline, RoleId role) {
+  if (role == RoleId::kSource || role == RoleId::kTarget) return false;
+  std::vector<ObjectId> there = baseline.objects_in(role);
+  for (ObjectId& thing : there) thing = standing_for(model, model.scenes[task.scene], thing);
+  return task.objects_in(role) != there;
 }
 
 std::uint32_t axes_between(const Model& model, const Task& task, const Task& baseline) {

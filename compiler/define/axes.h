@@ -15,7 +15,7 @@
 namespace probe::sema {
 
 // Whether a role beside source and target is filled by other objects.
-bool other_moves(const Task& task, const Task& baseline, RoleId role);
+bool other_moves(const Model& model, const Task& task, const Task& baseline, RoleId role);
 
 // A mask of plan::Axis over the normalised records; names do not count. Both are complete: what they
 // say is in Task::prompt.

@@ -7,6 +7,7 @@
 #include "compiler/define/axes.h"
 #include "compiler/define/in_start.h"
 #include "compiler/define/role.h"
+#include "compiler/define/scene.h"
 #include "compiler/define/set.h"
 #include "compiler/define/starts.h"
 #include "compiler/define/support.h"
@@ -139,6 +140,10 @@ class Derive {
         return context_.symbols.lights;
       case syntax::BinderDeclared::Of::kCameras:
         return context_.symbols.cameras;
+      case syntax::BinderDeclared::Of::kRobots:
+        return context_.symbols.robots;
+      case syntax::BinderDeclared::Of::kFixtures:
+        return context_.symbols.fixtures;
       case syntax::BinderDeclared::Of::kScenes:
         break;
     }
@@ -221,13 +226,7 @@ class Derive {
   // Whether a statement says the word, or a slot in its text.
   bool is_said_in_body(std::string_view word) const {
     const auto says = [&](const auto& stmt) {
-      const std::string_view text = context_.sources.text(stmt.span);
-      for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
-        const std::size_t end = at + word.size();
-        const bool begins = at == 0 || !syntax::is_word(text[at - 1]);
-        if (begins && (end == text.size() || !syntax::is_word(text[end]))) return true;
-      }
-      return false;
+      return says_word(context_.sources.text(stmt.span), word);
     };
     return std::ranges::any_of(
         node_.body, [&](const syntax::TaskStmt& stmt) { return std::visit(says, stmt); });
@@ -352,6 +351,12 @@ class Derive {
           return view.camera == static_cast<CameraId>(index);
         };
         return std::ranges::any_of(views_of(model, base), is_it);
+      }
+      case syntax::BinderDeclared::Of::kRobots:
+        return model.scenes[base.scene].robot == static_cast<RobotId>(index);
+      case syntax::BinderDeclared::Of::kFixtures: {
+        const std::vector<FixtureId>& there = model.scenes[base.scene].fixtures;
+        return std::ranges::find(there, static_cast<FixtureId>(index)) != there.end();
       }
       case syntax::BinderDeclared::Of::kScenes:
         break;

@@ -398,6 +398,7 @@ void define_robots(Context& context) {
     Robot robot;
     robot.name = std::string(declared.node->name.text);
     robot.span = declared.node->name.span;
+    if (parents[i]) robot.like = static_cast<RobotId>(*parents[i]);
     // Of a copy of what has a mistake only its own text could be told of.
     robot.broken = declared.node->like &&
                    (!parents[i] || context.model.robots[static_cast<RobotId>(*parents[i])].broken);

@@ -9,8 +9,10 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/paint.h"
 #include "compiler/define/record.h"
+#include "compiler/define/scene.h"
 #include "compiler/names/quantities.h"
 #include "compiler/names/texts.h"
+#include "compiler/syntax/lexer.h"
 #include "runtime/plan/limits.h"
 
 namespace probe::sema {
@@ -19,14 +21,19 @@ namespace {
 struct SceneReader {
   Context& context;
   Scene& scene;
+  const NameBound& bound;
   bool has_surface = false, has_physics = false, has_backdrop = false, has_cameras = false;
   bool has_joints = false, has_fixture = false, has_fixtures = false;
   Span fixture_region = {};
 
   void operator()(const syntax::SceneRobotStmt& stmt) {
-    const auto robot = context.symbols.robots.find(stmt.robot, context.diagnostics);
-    if (robot) scene.robot = static_cast<RobotId>(*robot);
-    const auto at = read_point(context, stmt.at, 2, 3, dim::kLength,
+    if (stmt.robot) {
+      const auto robot = context.symbols.robots.find(bound(*stmt.robot), context.diagnostics);
+      if (robot) scene.robot = static_cast<RobotId>(*robot);
+    }
+    if (!stmt.at) return;
+    scene.is_placed = true;
+    const auto at = read_point(context, *stmt.at, 2, 3, dim::kLength,
                                {"`robot ... at` takes lengths", plan::Magnitude::kPlace});
     assign(scene.base_position, at);
     scene.base_on_surface = at && at->size() == 2;
@@ -86,7 +93,7 @@ struct SceneReader {
     scene.fixtures.clear();
     scene.fixtures_lift = 0;
     for (const syntax::Name& name : stmt.fixtures) {
-      const auto found = context.symbols.fixtures.find(name, context.diagnostics);
+      const auto found = context.symbols.fixtures.find(bound(name), context.diagnostics);
       if (!found) continue;
       const auto id = static_cast<FixtureId>(*found);
       if (std::ranges::find(scene.fixtures, id) != scene.fixtures.end()) {
@@ -137,7 +144,7 @@ struct SceneReader {
     has_cameras = true;
     scene.views.clear();
     for (const syntax::SceneCamera& written : stmt.cameras) {
-      const auto camera = context.symbols.cameras.find(written.camera, context.diagnostics);
+      const auto camera = context.symbols.cameras.find(bound(written.camera), context.diagnostics);
       if (!camera) continue;
       View view;
       const syntax::Name& name = written.as ? *written.as : written.camera;
@@ -168,7 +175,7 @@ struct SceneReader {
     scene.views.push_back(std::move(view));
   }
   void operator()(const syntax::UseLightStmt& stmt) {
-    const auto light = context.symbols.lights.find(stmt.light, context.diagnostics);
+    const auto light = context.symbols.lights.find(bound(stmt.light), context.diagnostics);
     if (light) scene.light = static_cast<LightId>(*light);
   }
   void operator()(const syntax::PhysicsStmt& stmt) {
@@ -293,52 +300,92 @@ void check_photos(Context& context, const Scene& scene) {
   }
 }
 
+// The statements over what the scene has. `is_copy`: that stood somewhere, on a surface.
+Own read_body(Context& context, const std::vector<syntax::SceneStmt>& body, bool is_copy,
+              Scene& scene, const NameBound& bound) {
+  SceneReader reader{context, scene, bound};
+  const double copied_z = scene.surface_z;
+  const auto errors = context.mistakes();
+  for (const syntax::SceneStmt& stmt : body) std::visit(reader, stmt);
+  if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
+  // What was copied stands on the surface as it stood there.
+  if (is_copy && reader.has_surface) {
+    const double rise = scene.surface_z - copied_z;
+    if (scene.fixture && !reader.has_fixture) scene.fixture_position[2] += rise;
+    if (!reader.has_fixtures) scene.fixtures_lift += rise;
+  }
+  if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
+  if (reader.has_cameras) scene.cameras_z = scene.surface_z;
+  if (!reader.fixture_region.is_none() && !scene.fixture) {
+    context.report(Code::P0201, reader.fixture_region,
+                   "scene `" + scene.name + "` has no `fixture \"...\"` whose region this is");
+  }
+  if (context.mistakes() == errors) check_photos(context, scene);
+  return {reader.has_joints, reader.has_physics};
+}
+
+void check_whole(Context& context, Scene& scene, Own own) {
+  const auto need = [&](bool is_there, std::string_view statement) {
+    require(context, is_there, "scene", scene.name, scene.span, statement);
+  };
+  need(scene.robot != RobotId::kNone, "robot");
+  need(scene.robot == RobotId::kNone || scene.is_placed, "robot ... at");
+  need(!scene.joints_span.is_none(), "joints");
+  need(scene.area[0] != scene.area[2], "surface");
+  need(!scene.views.empty(), "camera");
+  need(scene.light != LightId::kNone, "light");
+  need(scene.physics_hz != 0, "physics");
+  if (scene.robot == RobotId::kNone) return;
+  scene.broken = context.model.robots[scene.robot].broken;
+  for (const FixtureId id : scene.fixtures)
+    scene.broken = scene.broken || context.model.fixtures[id].broken;
+  if (!scene.broken) check_joints(context, scene, own);
+  if (!scene.broken) check_air(context, scene, own);
+  check_rates(context, scene, own);
+}
+
 }  // namespace
 
 void define_scenes(Context& context) {
   Own own;
+  const NameBound as_written = [](const syntax::Name& name) { return name; };
   const auto read = [&](const Declared<syntax::SceneDecl>& declared, Scene& scene) {
-    SceneReader reader{context, scene};
-    const double copied_z = scene.surface_z;
-    const auto errors = context.mistakes();
-    for (const syntax::SceneStmt& stmt : declared.node->body) std::visit(reader, stmt);
-    if (scene.base_on_surface) scene.base_position[2] = scene.surface_z;
-    // What was copied stands on the surface as it stood there.
-    if (declared.node->like && reader.has_surface) {
-      const double rise = scene.surface_z - copied_z;
-      if (scene.fixture && !reader.has_fixture) scene.fixture_position[2] += rise;
-      if (!reader.has_fixtures) scene.fixtures_lift += rise;
-    }
-    if (reader.has_backdrop) scene.backdrop_z = scene.surface_z;
-    if (reader.has_cameras) scene.cameras_z = scene.surface_z;
-    if (!reader.fixture_region.is_none() && !scene.fixture) {
-      context.report(Code::P0201, reader.fixture_region,
-                     "scene `" + scene.name + "` has no `fixture \"...\"` whose region this is");
-    }
-    own = {reader.has_joints, reader.has_physics};
-    if (context.mistakes() == errors) check_photos(context, scene);
+    const syntax::SceneDecl& node = *declared.node;
+    own = read_body(context, node.body, node.like.has_value(), scene, as_written);
   };
   const auto complete = [&](Scene& scene, bool is_read) {
-    if (!is_read) return;
-    const auto need = [&](bool is_there, std::string_view statement) {
-      require(context, is_there, "scene", scene.name, scene.span, statement);
-    };
-    need(scene.robot != RobotId::kNone, "robot");
-    need(!scene.joints_span.is_none(), "joints");
-    need(scene.area[0] != scene.area[2], "surface");
-    need(!scene.views.empty(), "camera");
-    need(scene.light != LightId::kNone, "light");
-    need(scene.physics_hz != 0, "physics");
-    if (scene.robot == RobotId::kNone) return;
-    scene.broken = context.model.robots[scene.robot].broken;
-    for (const FixtureId id : scene.fixtures)
-      scene.broken = scene.broken || context.model.fixtures[id].broken;
-    if (!scene.broken) check_joints(context, scene, own);
-    if (!scene.broken) check_air(context, scene, own);
-    check_rates(context, scene, own);
+    if (is_read) check_whole(context, scene, own);
   };
   define_records(context, context.symbols.scenes, context.symbols.scene_decls, context.model.scenes,
                  read, complete);
+}
+
+bool says_word(std::string_view text, std::string_view word) {
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool begins = at == 0 || !syntax::is_word(text[at - 1]);
+    if (begins && (end == text.size() || !syntax::is_word(text[end]))) return true;
+  }
+  return false;
+}
+
+SceneId change_scene(Context& context, SceneId from, const syntax::TaskSceneStmt& stmt,
+                     const NameBound& bound, const std::string& bindings) {
+  Table<SceneId, Scene>& scenes = context.model.scenes;
+  const std::string changed = fmt::format("{}:{}:{}:{}", static_cast<std::uint32_t>(from),
+                                          stmt.span.file.value,
+                                          stmt.span.begin, bindings);
+  for (std::size_t i = context.symbols.scene_decls.size(); i < scenes.size(); ++i) {
+    if (scenes[scenes.id(i)].changed == changed) return scenes.id(i);
+  }
+  Scene scene = scenes[from];
+  scene.changed = changed;
+  const std::size_t mistakes = context.mistakes();
+  const Own own = read_body(context, stmt.body, true, scene, bound);
+  if (!scene.broken && context.mistakes() == mistakes) check_whole(context, scene, own);
+  scene.broken = scene.broken || context.mistakes() != mistakes;
+  scenes.add(std::move(scene));
+  return scenes.id(scenes.size() - 1);
 }
 
 }  // namespace probe::sema

@@ -307,7 +307,7 @@ bool SetReader::holds(const syntax::CondTest& test, const Task& task) const {
       if (const plan::AxisInfo* axis = plan::find_axis(word))
         return plan::moves(task.axes, axis->axis);
       return plan::moves(task.axes, plan::Axis::kObjectOther) &&
-             other_moves(task, model.tasks[task.baseline],
+             other_moves(model, task, model.tasks[task.baseline],
                          *find_role(model, word.substr(word.find('.') + 1)));
     case syntax::CondKind::kUses:
       return uses(model, task, plan::find_language_axis(word)->axis);

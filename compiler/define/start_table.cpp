@@ -229,6 +229,7 @@ class StartTable {
   // A role that one object fills, or an object.
   bool find_object(const TableCell& cell) {
     const syntax::Name name{cell.span, cell.text};
+    if (cell.text == "distractors") return true;
     if (find_role(context_, cell.text)) return find_single_role(context_, name).has_value();
     return context_.symbols.objects.find(name, context_.diagnostics).has_value();
   }

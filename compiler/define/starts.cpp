@@ -201,7 +201,16 @@ struct Enumerator {
   }
 };
 
-// The starts of a file, for the objects of one task: by name, or by the role that they fill.
+// Whether a row is an object's: it has its name, or that of its role, or is that of the distractors
+// of a task that has one.
+bool is_row_of(const Model& model, const Task& task, const std::string& row, ObjectId id) {
+  if (const auto role = find_role(model, row)) return task.role_of(id) == *role;
+  if (row == "distractors") return task.distractors == std::vector<ObjectId>{id};
+  return row == model.objects[id].name;
+}
+
+// The starts of a file, for the objects of one task. A row that is no object's of it is none of
+// its: a role or the distractors that it takes away.
 std::vector<Start> given_starts(const Model& model, const Layout& layout, const Task& task,
                                 std::optional<LayoutProblem>& problem) {
   const std::vector<ObjectId> objects = task.objects();
@@ -215,8 +224,7 @@ std::vector<Start> given_starts(const Model& model, const Layout& layout, const 
           "start " + std::to_string(starts.size()) + " of layout `" + layout.name + "` ";
       const GivenPlace* found = nullptr;
       for (const GivenPlace& place : given) {
-        const auto role = find_role(model, place.what.text);
-        if (role ? task.role_of(id) != *role : place.what.text != object.name) continue;
+        if (!is_row_of(model, task, place.what.text, id)) continue;
         if (found != nullptr) {
           problem = LayoutProblem{Situation::kStartTwice,
                                   in_start + "has `" + object.name + "` twice, as `" +

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compiler/define/thing.h"
+#include "compiler/define/replaced.h"
 #include "compiler/define/views.h"
 #include "compiler/names/quantities.h"
 #include "runtime/plan/limits.h"
@@ -156,6 +157,19 @@ void check_joint_starts(Context& context, const Task& task, bool& poisoned) {
   }
 }
 
+// A copy of a robot may have another description, without the link.
+void check_mount(Context& context, const Task& task, const Camera& camera, bool& poisoned) {
+  const Robot& robot = context.model.robots[context.model.scenes[task.scene].robot];
+  if (!robot.model || robot.model->find_link(camera.mount_link.text) >= 0) return;
+  context
+      .report(Code::P0201, task.span,
+              "robot `" + robot.name + "` of `" + task.name + "` has no link `" +
+                  camera.mount_link.text + "`, on which camera `" + camera.name + "` is mounted")
+      .label(camera.mount_link.span, "this link")
+      .label(robot.span, "the robot");
+  poisoned = true;
+}
+
 // What a task's camera takes the place of must be there, and a camera moves with a link, so that
 // link must be in the scene.
 void check_cameras(Context& context, const Task& task, bool& poisoned) {
@@ -170,7 +184,10 @@ void check_cameras(Context& context, const Task& task, bool& poisoned) {
   }
   for (const View& view : views_of(context.model, task)) {
     const Camera& camera = context.model.cameras[view.camera];
-    if (camera.mount_robot == scene.robot) continue;
+    if (is_copy_of(context.model, scene.robot, camera.mount_robot)) {
+      check_mount(context, task, camera, poisoned);
+      continue;
+    }
     context
         .report(Situation::kOtherRobot, task.span,
                 "camera `" + camera.name + "` of `" + task.name +

@@ -7,7 +7,9 @@
 #include "compiler/define/fixture.h"
 #include "compiler/define/metrics.h"
 #include "compiler/define/motion.h"
+#include "compiler/define/replaced.h"
 #include "compiler/define/role.h"
+#include "compiler/define/scene.h"
 #include "compiler/define/solution.h"
 #include "compiler/define/telling.h"
 #include "compiler/define/template.h"
@@ -175,6 +177,29 @@ struct TaskReader {
       case syntax::TaskField::kLight:
         return field(task.light, symbols.lights, bound(stmt.value));
     }
+  }
+  void operator()(const syntax::TaskSceneStmt& stmt) {
+    if (stmt.scene) field(task.scene, context.symbols.scenes, bound(*stmt.scene));
+    if (poisoned) return;
+    if (task.scene == SceneId::kNone) {
+      context
+          .report(Situation::kStatementMissing, stmt.span,
+                  "task `" + task.name + "` has no scene that this changes")
+          .help("name it: `scene NAME { .. }`");
+      poisoned = true;
+      return;
+    }
+    // What the block does not speak of makes no other scene.
+    std::string bindings;
+    const std::string_view said = context.sources.text(stmt.span);
+    for (const Binding& binding : declared.bindings) {
+      if (says_word(said, binding.name))
+        bindings += std::string(binding.name) + "=" + std::string(binding.value) + ";";
+    }
+    task.scene = change_scene(
+        context, task.scene, stmt, [this](const syntax::Name& name) { return bound(name); },
+        bindings);
+    poisoned = poisoned || context.model.scenes[task.scene].broken;
   }
   void operator()(const syntax::TaskLayoutStmt& stmt) {
     task.layout_span = stmt.layout.span;
@@ -408,8 +433,19 @@ struct TaskReader {
 
 void read_statements(Context& context, const DeclaredTask& declared, Task& task, bool& poisoned) {
   TaskReader reader{context, declared, task, poisoned};
+  const auto is_scene = [](const syntax::TaskStmt& stmt) {
+    const auto* field = std::get_if<syntax::FieldStmt>(&stmt);
+    return std::holds_alternative<syntax::TaskSceneStmt>(stmt) ||
+           (field != nullptr && field->field == syntax::TaskField::kScene);
+  };
+  // What was copied follows its fixtures; what the task says itself is of what stands there.
   for (const syntax::TaskStmt& stmt : *declared.body) {
-    if (!std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);
+    if (is_scene(stmt)) std::visit(reader, stmt);
+  }
+  if (!poisoned) follow_fixtures(context.model, task);
+  for (const syntax::TaskStmt& stmt : *declared.body) {
+    if (!is_scene(stmt) && !std::holds_alternative<syntax::ReferStmt>(stmt))
+      std::visit(reader, stmt);
   }
   for (const syntax::TaskStmt& stmt : *declared.body) {
     if (std::holds_alternative<syntax::ReferStmt>(stmt)) std::visit(reader, stmt);

@@ -16,7 +16,7 @@ Quat looking_along(const std::array<double, 4>& direction) {
 }  // namespace
 
 std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Camera& camera) {
-  if (scene.robot == RobotId::kNone || camera.mount_robot != scene.robot || camera.broken)
+  if (scene.robot == RobotId::kNone || camera.broken)
     return std::nullopt;
   const Robot& robot = model.robots[scene.robot];
   if (!robot.model) return std::nullopt;

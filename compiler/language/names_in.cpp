@@ -284,6 +284,10 @@ class Walker {
         return thing(stmt.value, Kind::kObject | Kind::kFixture);
     }
   }
+  void operator()(const TaskSceneStmt& stmt) {
+    name(stmt.scene, Kind::kScene);
+    all(stmt.body);
+  }
   void operator()(const TaskLayoutStmt& stmt) {
     name(stmt.layout, Kind::kLayout);
     for (const ClearPhrase& clear : stmt.clear) {
@@ -348,7 +352,8 @@ class Walker {
     for (const Name& object : over.objects) thing(object, Kind::kObject | Kind::kFixture);
   }
   void operator()(const BinderDeclared& over) {
-    constexpr Kind kOf[] = {Kind::kLight, Kind::kCamera, Kind::kScene};
+    constexpr Kind kOf[] = {Kind::kLight, Kind::kCamera, Kind::kScene, Kind::kRobot,
+                            Kind::kFixture};
     names(over.names, kOf[static_cast<std::size_t>(over.of)]);
   }
   void operator()(const BinderNumbers&) {}

@@ -190,6 +190,7 @@ struct Drive {
 struct Robot {
   std::string name;
   bool broken = false;  // as of an object
+  RobotId like = RobotId::kNone;
   Span span;
   Spelled urdf;
   Spelled tcp;
@@ -321,11 +322,13 @@ struct JointStart {
 };
 
 struct Scene {
-  std::string name;
+  std::string name;     // of one that a task changes, as before
   Span span;
+  std::string changed;  // by which statement of which task, and in what; empty: as declared
   bool broken = false;  // something was reported, and tasks here are not looked at
   RobotId robot = RobotId::kNone;
   std::array<double, 3> base_position{};
+  bool is_placed = false;        // where the robot stands was said
   bool base_on_surface = false;  // no height was written
   Turn base_turn;
   std::vector<Quantity> joints;

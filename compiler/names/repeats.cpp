@@ -119,6 +119,14 @@ void check_claims(Context& context, const std::vector<syntax::ObjectStmt>& body)
   if (seen && unseen) report_repeat(context, *unseen, *seen, "an object is seen or `unseen`");
 }
 
+// What a task changes in its scene is a block of its own.
+void check_scenes(Context& context, const std::vector<syntax::TaskStmt>& body) {
+  for (const syntax::TaskStmt& stmt : body) {
+    if (const auto* scene = std::get_if<syntax::TaskSceneStmt>(&stmt))
+      check_block(context, syntax::Block::kScene, scene->body);
+  }
+}
+
 void check_parameters(Context& context, const syntax::PredicateDecl& predicate) {
   std::map<std::string_view, Span> known;
   for (const syntax::Param& param : predicate.params) {
@@ -151,14 +159,18 @@ void check_repeats(Context& context) {
       }
     }
     if constexpr (std::is_same_v<Node, syntax::VariantsDecl>) {
-      for (const syntax::VariantsMember& member : node.members)
+      for (const syntax::VariantsMember& member : node.members) {
         check_block(context, syntax::Block::kTask, member.body);
+        check_scenes(context, member.body);
+      }
     } else if constexpr (std::is_same_v<Node, syntax::MetricsDecl> ||
                          std::is_same_v<Node, syntax::QuestionsDecl> ||
                          std::is_same_v<Node, syntax::DatasetDecl>) {
       // Metrics and questions are checked where they are read; relations add up.
     } else if constexpr (requires { node.body.begin(); }) {
       check_block(context, block_of(node), node.body);
+      if constexpr (requires { check_scenes(context, node.body); })
+        check_scenes(context, node.body);
     }
   };
   for (const syntax::File* file : context.files) {

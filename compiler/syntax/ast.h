@@ -635,11 +635,11 @@ struct FixtureDecl {
   std::vector<FixtureBodyStmt> body;
 };
 
-struct SceneRobotStmt {
+struct SceneRobotStmt {  // `robot widowx at (..) yaw ..`; in a copy the robot, or its place, alone
   Span span;
-  Name robot;
-  Point at;  // two or three coordinates
-  Quantity yaw;
+  std::optional<Name> robot;
+  std::optional<Point> at;  // two or three coordinates
+  Quantity yaw;             // behind `at`
 };
 struct JointsStmt {  // `joints (-0.018rad, 0.04rad, 3.7cm)`: initial positions, in the URDF's order
   Span span;
@@ -823,6 +823,11 @@ struct FieldStmt {  // `scene table`
   TaskField field = TaskField::kScene;
   Name value;  // of a role also `cabinet.top_drawer`
 };
+struct TaskSceneStmt {  // `scene { robot panda }`, `scene table { light l }`: with these changed
+  Span span;
+  std::optional<Name> scene;  // else the one that is copied
+  std::vector<SceneStmt> body;
+};
 struct ClearPhrase {  // `side of source`
   Name phrase;
   Name role;
@@ -906,7 +911,7 @@ struct SolutionStmt {  // `none` is the empty list
   Span span;
   std::vector<SkillNode> skills;
 };
-using TaskStmt = std::variant<FieldStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
+using TaskStmt = std::variant<FieldStmt, TaskSceneStmt, TaskLayoutStmt, TaskCameraStmt, DistractorsStmt, SayStmt,
                               ThenStmt, ReferStmt, PoseStmt, StartStmt, HorizonStmt, IdleStmt, DelayStmt,
                               MovesStmt, SolutionStmt, MetricStmt, RoleStmt>;
 
@@ -945,7 +950,7 @@ struct BinderObjects {  // `o in objects (carrot, spoon)`, `p in parts (cabinet.
   std::vector<Name> objects;
 };
 struct BinderDeclared {  // `l in lights (day, night)`
-  enum class Of : std::uint8_t { kLights, kCameras, kScenes };
+  enum class Of : std::uint8_t { kLights, kCameras, kScenes, kRobots, kFixtures };
   Of of = Of::kLights;
   std::vector<Name> names;
 };

@@ -18,6 +18,8 @@ std::optional<BinderDeclared::Of> Parser::declared_pool() {
   if (at_word("lights")) return BinderDeclared::Of::kLights;
   if (at_word("cameras")) return BinderDeclared::Of::kCameras;
   if (at_word("scenes")) return BinderDeclared::Of::kScenes;
+  if (at_word("robots")) return BinderDeclared::Of::kRobots;
+  if (at_word("fixtures")) return BinderDeclared::Of::kFixtures;
   return std::nullopt;
 }
 
@@ -80,7 +82,7 @@ Binder Parser::binder() {
              kind_ahead(2) == TokenKind::kComma) {
     fail(Code::P0101, here(),
          "a list of names has a word before it that says of what: `lights (..)`, `cameras`, `scenes`, "
-         "`objects` or `parts`; tasks stand in braces");
+         "`robots`, `fixtures`, `objects` or `parts`; tasks stand in braces");
   } else if ((declared_pool() || at_word("objects") || at_word("parts")) &&
              kind_ahead(1) == TokenKind::kIdent && text_ahead(1) != "where") {
     // No set: two names behind one another are none.

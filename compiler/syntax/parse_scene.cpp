@@ -3,23 +3,28 @@
 
 namespace probe::syntax {
 
-DeclNode Parser::scene_decl() {
+std::vector<SceneStmt> Parser::scene_body() {
   static constexpr Rule<SceneStmt> kRules[] = {
 #define PROBE_IN_SCENE(word, parse, repeat) {#word, &Parser::parse},
 #include "compiler/syntax/keywords.def"
   };
+  return body<SceneStmt>(kRules, "a statement of `scene`");
+}
+
+DeclNode Parser::scene_decl() {
   advance();
   SceneDecl out;
   out.name = name();
   out.like = optional_name_after("like");
-  out.body = body<SceneStmt>(kRules, "a statement of `scene`");
+  out.body = scene_body();
   return out;
 }
 
 SceneStmt Parser::scene_robot() {
   SceneRobotStmt out;
-  out.robot = name();
-  expect_word("at");
+  const bool is_place = at_word("at") && kind_ahead(1) == TokenKind::kLeftParen;
+  if (!is_place) out.robot = name();
+  if (!accept_word("at")) return out;
   out.at = point();
   expect_word("yaw");
   out.yaw = quantity();

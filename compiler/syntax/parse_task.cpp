@@ -57,6 +57,13 @@ TaskStmt Parser::task_field() {
   return FieldStmt{{}, field, kIsRole ? thing() : name()};
 }
 
+TaskStmt Parser::task_scene() {
+  std::optional<Name> scene;
+  if (!at(TokenKind::kLeftBrace)) scene = name();
+  if (scene && !at(TokenKind::kLeftBrace)) return FieldStmt{{}, TaskField::kScene, *scene};
+  return TaskSceneStmt{{}, scene, scene_body()};
+}
+
 std::vector<TaskStmt> Parser::task_body() {
   static constexpr Rule<TaskStmt> kRules[] = {
 #define PROBE_IN_TASK(word, parse, repeat) {#word, &Parser::parse},

@@ -223,6 +223,7 @@ class Parser {
 
   // ---- parse_scene.cpp ----
   DeclNode scene_decl();
+  std::vector<SceneStmt> scene_body();
   SceneStmt scene_robot();
   SceneStmt scene_joints();
   SceneStmt scene_surface();
@@ -290,6 +291,7 @@ class Parser {
   template <TaskField field>
   TaskStmt task_field();
   TaskStmt task_layout();
+  TaskStmt task_scene();
   TaskStmt task_camera();
   TaskStmt task_distractors();
   TaskStmt task_say();

@@ -452,3 +452,26 @@ TEST_CASE("t1: of a sample with baselines what is drawn comes with what it is co
   }
   CHECK(suite.members.size() >= 3);
 }
+
+TEST_CASE(
+    "task_st, stand: `scene` with a block is the copied scene, or the named one, with other "
+    "statements, and either half of `robot` is changed alone") {
+  const Built built(
+      "robot soft like arm { grip 1cm .. 4cm friction 1 patch 1cm }\n"
+      "scene there like bench { robot at (45cm, 0cm) yaw 180deg }\n"
+      "variants of red_on_tray {\n  softly { scene { robot soft } }\n"
+      "  softly_there { scene there { robot soft; physics 1000Hz friction 1 } }\n}\n"
+      "derive \"{t}_by_{r}\" for t in { red_on_tray }, r in robots (soft) {\n"
+      "  scene { robot r; light night }\n}\n");
+  const plan::Plan& plan = built.plan();
+  const auto scene = [&](const char* task) { return plan.scenes()[built.task(task).scene]; };
+  const auto robot = [&](const char* task) { return plan.text(plan.robots()[scene(task).robot].name); };
+  CHECK(robot("red_on_tray") == "arm");
+  CHECK(robot("softly") == "soft");
+  CHECK(scene("softly").base_position == scene("red_on_tray").base_position);
+  CHECK(scene("softly_there").base_position[0] == 0.45);
+  CHECK(scene("softly_there").physics_hz == 1000);
+  CHECK(plan.text(scene("softly_there").name) == "there");
+  CHECK(robot("red_on_tray_by_soft") == "soft");
+  CHECK(built.task("softly").axes == bit(plan::Axis::kScene));
+}

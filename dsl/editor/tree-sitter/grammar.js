@@ -46,6 +46,8 @@ const wordChain = (self, word, operand) =>
 const region = ($, owner) =>
   seq(named($), ...(owner ? ['of', field('of', $.identifier)] : []), 'box', range($, $.point),
       optional(seq('at', $.point, optional($.pose))));
+const stand = ($) => seq('at', $.point, 'yaw', $.quantity);
+const changes = ($) => block($, $._scene_statement);
 const lamp = ($) => seq('power', $.quantity, maybe($, 'specular'), maybe($, 'ambient'));
 const jointStart = ($, ...value) => choice(
     'none', seq(field('fixture', nameOr($, 'none')), on($, '.'), field('joint', $.identifier), choice('none', ...value)));
@@ -136,7 +138,7 @@ const statements = {
   },
   part: described,
   scene: {
-    robot: ($) => seq($.identifier, 'at', $.point, 'yaw', $.quantity),
+    robot: ($) => choice(seq($.identifier, optional(stand($))), stand($)),
     joints: ($) => $.point,
     surface: ($) => seq($.quantity, 'area', range($, $.point)),
     texture: ($) => seq($.identifier, $.string, optional(alias($._number, $.quantity))),
@@ -164,7 +166,7 @@ const statements = {
     expect: ($) => seq($.integer, 'episodes'),
   },
   task: {
-    scene: ($) => $.identifier,
+    scene: ($) => choice(seq($.identifier, optional(changes($))), changes($)),
     layout: ($) => seq($.identifier, optional(seq('where', 'clear', list($, $.clear_phrase)))),
     source: ($) => $.thing,
     target: ($) => $.thing,
@@ -387,7 +389,7 @@ module.exports = grammar({
         seq(optional('clear'), 'phrases', field('axis', $.identifier), 'of', field('role', $.identifier)),
         prec(1, seq('templates', 'of', field('frame', $.identifier))),
         seq(choice('objects', 'parts'), parens(things($))),
-        seq(choice('lights', 'cameras', 'scenes'), parens(names($))),
+        seq(choice('lights', 'cameras', 'scenes', 'robots', 'fixtures'), parens(names($))),
         $.numbers,
         seq(field('role', $._task_set_name), 'of', field('of', $.identifier)),
         $._set_operation)),
@@ -407,7 +409,7 @@ module.exports = grammar({
     variants_of: ($) => prec(1, seq('variants', 'of', $._set_operand)),
     sample: ($) => seq('sample', $.integer, drawn($)),
     _task_set_name: ($) => nameOr($, 'variants', 'sample', 'templates', 'phrases', 'clear', 'objects', 'parts', 'lights',
-                                  'cameras', 'scenes'),
+                                  'cameras', 'scenes', 'robots', 'fixtures'),
 
     _condition: ($) => choice(alias($._condition_or, $.binary_condition), $._condition_and_up),
     _condition_or: ($) => wordChain($._condition, 'or', $._condition_and_up),

@@ -335,3 +335,28 @@ TEST_CASE("what a table puts well above the surface is not asked to be taken fro
   CHECK(said(table("0.90"), text).find("cannot grasp `carrot`") != std::string::npos);
   CHECK(said(table("1.37"), text).find("cannot grasp `carrot`") == std::string::npos);
 }
+
+TEST_CASE("a row of the distractors is that of a task's only one, and of none where it has none") {
+  const std::string table =
+      "start,object,x_m,y_m\n0,source,-0.2,0.075\n0,target,-0.16,-0.1\n0,distractors,-0.05,0.1\n";
+  const std::string more = "variant u of t { distractors none }\n";
+  const plan::Plan plan =
+      plan_with(table, std::string(kLayout) +
+                           "task t like on_table { layout given; source carrot; target plate; "
+                           "distractors spoon }\n" +
+                           more);
+  const auto t = plan.find_task("t"), u = plan.find_task("u");
+  REQUIRE((t && u));
+  CHECK(plan.tasks()[*u].axes == plan::bit(plan::Axis::kDistractors));
+  const auto placed = [&](std::uint32_t task) {
+    return plan::slice_of(plan.tables().placements, plan.episodes(plan.tasks()[task])[0].placements)
+        .size();
+  };
+  CHECK(placed(*t) == 3);
+  CHECK(placed(*u) == 2);
+  const std::string two = said(
+      table, std::string(kLayout) +
+                 "task t like on_table { layout given; source carrot; target plate; "
+                 "distractors spoon, eggplant }\n");
+  CHECK_MESSAGE(two.find("P1502") != std::string::npos, two);
+}
