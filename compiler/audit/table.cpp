@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <vector>
+
+#include "runtime/base/percent.h"
 
 namespace probe::audit {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::size_t kMostTasks = 100;  // of a category that would explain a c
 
 struct Percentage {
   double value = 0;
-  double half = 0;  // half a unit of the last decimal
+  int decimals = 0;
 };
 
 struct Column {
@@ -46,8 +47,7 @@ std::optional<Percentage> read_percentage(std::string_view cell) {
   if (error != std::errc() || end != cell.data() + cell.size()) return std::nullopt;
   if (!(out.value >= 0 && out.value <= 100)) return std::nullopt;
   const std::size_t point = cell.find('.');
-  const std::size_t decimals = point == std::string_view::npos ? 0 : cell.size() - point - 1;
-  out.half = 0.5 * std::pow(0.1, static_cast<double>(decimals));
+  out.decimals = point == std::string_view::npos ? 0 : static_cast<int>(cell.size() - point - 1);
   return out;
 }
 
@@ -72,17 +72,14 @@ std::vector<Column> read_columns(std::string_view text) {
   return columns;
 }
 
-bool fits(const Percentage& number, std::size_t episodes) {
-  constexpr double kRounding = 1e-6;  // of the decimals themselves, and of a tie
-  const double one = 100 / static_cast<double>(episodes);
-  const double nearest = std::round(number.value / one) * one;
-  return std::abs(nearest - number.value) <= number.half + kRounding;
-}
-
 std::size_t misfits(const Column& column, std::size_t episodes) {
   return static_cast<std::size_t>(
       std::count_if(column.numbers.begin(), column.numbers.end(),
-                    [&](const Percentage& number) { return !fits(number, episodes); }));
+                    [&](const Percentage& number) {
+                      return !nearest_counts(number.value, number.decimals,
+                                             static_cast<std::int64_t>(episodes))
+                                  .fits;
+                    }));
 }
 
 // The plan keeps no place of a set.

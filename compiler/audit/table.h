@@ -1,6 +1,5 @@
 // A published table of percentages against a suite's categories: whether numbers of so few decimals
-// can be averages over as many episodes as the category has. (The GRIM test of N. Brown and
-// J. Heathers, "The GRIM test", 2017, for rates.)
+// can be averages over as many episodes as the category has.
 #pragma once
 
 #include <cstdint>

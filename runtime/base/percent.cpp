@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace probe {
@@ -10,6 +11,21 @@ std::string percent_text(std::int64_t k, std::int64_t n) {
   if (n <= 0) return "0.0";
   const std::int64_t tenths = (2000 * k + n) / (2 * n);
   return fmt::format("{}.{}", tenths / 10, tenths % 10);
+}
+
+NearestCounts nearest_counts(double percent, int decimals, std::int64_t n) {
+  constexpr double kRounding = 1e-9;  // of the percentage itself
+  const double exact = percent / 100 * static_cast<double>(n);
+  NearestCounts found;
+  found.below =
+      std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(exact + kRounding)), 0, n);
+  found.above = std::min(found.below + 1, n);
+  const double half_digit = 0.5 * std::pow(10.0, -decimals) + kRounding;
+  for (const std::int64_t k : {found.below, found.above}) {
+    const double rate = 100 * static_cast<double>(k) / static_cast<double>(n);
+    if (std::abs(rate - percent) <= half_digit) return {true, k, k};
+  }
+  return found;
 }
 
 double rounded(double value, int digits) {

@@ -12,6 +12,15 @@ namespace probe {
 // printf, halves to even, has 5.2. "0.0" for n = 0.
 std::string percent_text(std::int64_t k, std::int64_t n);
 
+// The counts of `n` episodes (at least one) whose percentages are nearest to one that was written
+// with so many decimals; it fits when one of them rounds to it, halves either way. (The GRIM test of
+// N. Brown and J. Heathers, "The GRIM test", 2017, for rates.)
+struct NearestCounts {
+  bool fits = false;
+  std::int64_t below = 0, above = 0;  // k of n; equal when it fits
+};
+NearestCounts nearest_counts(double percent, int decimals, std::int64_t n);
+
 // A finite value to `digits` decimals, halves away from zero; what is within 1e-9 of a half is one,
 // since 100 times a rate is seldom exact. Never -0. As a number for JSON, and as text.
 double rounded(double value, int digits);

@@ -10,37 +10,10 @@
 #include "runtime/base/file.h"
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
+#include "runtime/report/csv_cells.h"
 
 namespace probe::report {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
-}
-
-// Cells of one line; quotes as spreadsheets write them, without line breaks inside.
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      cells.back().push_back('"');
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back().push_back(c);
-    }
-  }
-  for (std::string& cell : cells) cell = std::string(trimmed(cell));
-  return cells;
-}
 
 std::optional<Percentage> percentage_of(std::string_view text) {
   std::string_view digits = text;
@@ -89,7 +62,7 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
     ++number;
     if (line.empty() || line[0] == '#') continue;
     const std::string where = fmt::format("{}:{}", source, number);
-    std::vector<std::string> cells = cells_of(line);
+    std::vector<std::string> cells = csv_cells(line);
     if (!has_header) {
       if (cells.size() < 3 || cells[0] != "policy" || cells[1] != "metric") {
         return Failure{Fault::kUsage,
@@ -147,25 +120,11 @@ Result<PublishedTable> read_published(const std::string& path) {
   return parse_published(text, path);
 }
 
-Possible possible(const Percentage& percentage, std::int64_t n) {
-  const double exact = percentage.value / 100 * static_cast<double>(n);
-  Possible found;
-  found.below = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(exact + 1e-9)), 0, n);
-  found.above = std::min(found.below + 1, n);
-  // Halves may have been rounded either way.
-  const double half_digit = 0.5 * std::pow(10.0, -percentage.decimals) + 1e-9;
-  for (const std::int64_t k : {found.below, found.above}) {
-    if (std::abs(percent(k, n) - percentage.value) > half_digit) continue;
-    return {true, k, k};
-  }
-  return found;
-}
-
 std::optional<std::string> impossible(const Percentage& percentage, std::int64_t tasks,
                                       std::int64_t per_task) {
   const std::int64_t n = tasks * per_task;
   if (n <= 0) return std::nullopt;
-  const Possible found = possible(percentage, n);
+  const NearestCounts found = nearest_counts(percentage.value, percentage.decimals, n);
   if (found.fits) return std::nullopt;
   const int digits = percentage.decimals;
   std::string text =
@@ -177,7 +136,8 @@ std::optional<std::string> impossible(const Percentage& percentage, std::int64_t
   }
   for (const std::int64_t other : {tasks + 1, tasks - 1, tasks + 2}) {
     if (other <= 0) continue;
-    const Possible would = possible(percentage, other * per_task);
+    const NearestCounts would =
+        nearest_counts(percentage.value, percentage.decimals, other * per_task);
     if (!would.fits) continue;
     text += fmt::format("; {} tasks could give it: {} of {}", other, would.below, other * per_task);
     break;

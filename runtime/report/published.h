@@ -38,14 +38,6 @@ struct PublishedTable {
 Result<PublishedTable> parse_published(std::string_view csv, const std::string& source);
 Result<PublishedTable> read_published(const std::string& path);
 
-// The counts of `n` episodes whose percentages are nearest; `fits` when one of them, rounded to the
-// digits that were written, is it.
-struct Possible {
-  bool fits = false;
-  std::int64_t below = 0, above = 0;  // k of n; equal when it fits
-};
-Possible possible(const Percentage& percentage, std::int64_t n);
-
 // Why the percentage cannot be one of `tasks` tasks with `per_task` episodes each, in a sentence
 // with the nearest possible ones and, if there is one near, a number of tasks that would give it;
 // nothing when it can.

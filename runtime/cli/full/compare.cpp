@@ -3,22 +3,59 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/file.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/report/agreement.h"
 
 namespace probe::cli {
 namespace {
 
 struct CompareArguments {
-  std::string a, b;
+  std::vector<std::string> dirs;
   std::vector<std::string> metrics, sets;
+  std::string with;
   bool json = false;
 };
 
+// Rates of simulations against real ones: those of the table, and of the runs.
+int compare_rates(const CompareArguments& arguments) {
+  const auto text = read_file(arguments.with);
+  if (!text) return report(text.failure());
+  auto table = report::parse_rate_table(*text, arguments.with);
+  if (!table) return report(table.failure());
+  if (!arguments.dirs.empty()) {
+    const auto benchmark = report::load(arguments.dirs, {.prove = true});
+    if (!benchmark) return report(benchmark.failure());
+    say_notes(benchmark->notes);
+    report::add_runs(*table, *benchmark);
+  }
+  if (arguments.json) {
+    put("{}\n", report::agreement_json(*table).dump(1));
+  } else {
+    put("{}", report::agreement_text(*table));
+  }
+  return kFine;
+}
+
 int compare_verb(const CompareArguments& arguments) {
+  if (!arguments.with.empty()) {
+    if (arguments.metrics.empty() && arguments.sets.empty()) return compare_rates(arguments);
+    return report(Failure{Fault::kUsage,
+                          "--with compares rates of success, of the sets that its rows name: give it "
+                          "without --metrics and --sets",
+                          ""});
+  }
+  if (arguments.dirs.size() != 2) {
+    return report(Failure{Fault::kUsage,
+                          fmt::format("two results folders are compared, {} given; any number of them "
+                                      "against real rates: --with TABLE.csv",
+                                      arguments.dirs.size()),
+                          ""});
+  }
   const auto compared = report::compare_folders(
-      arguments.a, arguments.b, {.metrics = arguments.metrics, .sets = arguments.sets});
+      arguments.dirs[0], arguments.dirs[1], {.metrics = arguments.metrics, .sets = arguments.sets});
   if (!compared) return report(compared.failure());
   // Rows that their traces do not bear are in no number, in JSON neither.
   for (const report::Note& note : compared->benchmark.notes) {
@@ -40,11 +77,13 @@ void add_compare(Verb app, int& exit) {
                                  "two runs, or two models' answers, on the same starts: which "
                                  "differences are real, how large");
   verb.footer("example: vlaprobe compare runs/step_10000 runs/step_20000");
-  verb.add_option("A", arguments->a, "results folder").required();
-  verb.add_option("B", arguments->b, "results folder").required();
+  verb.add_option("DIR", arguments->dirs, "two results folders; behind --with any number");
   verb.add_option("--metrics", arguments->metrics, "A,B,...: of these only").delimiter(',');
   verb.add_option("--sets", arguments->sets, "A,B,...: sets of the plan that are the categories")
       .delimiter(',');
+  verb.add_option("--with", arguments->with,
+                  "TABLE.csv of published rates, real ones among them: MMRV and Pearson of each "
+                  "protocol, and of the folders' runs; rates that no count gives");
   verb.add_flag("--json", arguments->json, "words and numbers as a JSON object");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = compare_verb(*arguments); });

@@ -44,4 +44,18 @@ TEST_CASE("an interval that has width shows it") {
   CHECK(percent_range(1, 1, "-") == "100-100");
 }
 
+TEST_CASE("a percentage fits when some count rounds to it") {
+  CHECK(nearest_counts(66.1, 1, 360).fits);  // 238 of 360
+  CHECK(nearest_counts(66.1, 1, 360).below == 238);
+  const NearestCounts no = nearest_counts(66.1, 1, 288);
+  CHECK(!no.fits);
+  CHECK(no.below == 190);
+  CHECK(no.above == 191);
+  CHECK(nearest_counts(100, 1, 7).fits);
+  CHECK(nearest_counts(0, 0, 7).fits);
+  CHECK(nearest_counts(14, 0, 7).fits);  // 14.29
+  CHECK(!nearest_counts(14.0, 1, 7).fits);
+  CHECK(nearest_counts(12.5, 1, 24).fits);
+}
+
 }  // namespace probe

@@ -8,20 +8,6 @@
 
 namespace probe::report {
 
-TEST_CASE("a percentage fits when some count rounds to it") {
-  CHECK(possible({66.1, 1, "66.1"}, 360).fits);  // 238 of 360
-  CHECK(possible({66.1, 1, "66.1"}, 360).below == 238);
-  const Possible no = possible({66.1, 1, "66.1"}, 288);
-  CHECK(!no.fits);
-  CHECK(no.below == 190);
-  CHECK(no.above == 191);
-  CHECK(possible({100, 1, "100.0"}, 7).fits);
-  CHECK(possible({0, 0, "0"}, 7).fits);
-  CHECK(possible({14, 0, "14"}, 7).fits);  // 14.29
-  CHECK(!possible({14.0, 1, "14.0"}, 7).fits);
-  CHECK(possible({12.5, 1, "12.5"}, 24).fits);
-}
-
 // A published 43.9 % of 500 episodes: 219 are 43.8 and 220 are 44.0.
 TEST_CASE("a percentage that no count gives is told with the nearest ones") {
   const auto flag = impossible({43.9, 1, "43.9"}, 1, 500);

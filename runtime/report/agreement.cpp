@@ -1,0 +1,350 @@
+#include "runtime/report/agreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "runtime/base/percent.h"
+#include "runtime/base/printable.h"
+#include "runtime/report/csv_cells.h"
+
+namespace probe::report {
+namespace {
+
+constexpr std::size_t kLongest = 200;  // of a cell in messages, bytes
+constexpr std::size_t kFewest = 3;     // policies: two always lie on a line
+
+enum Column : std::size_t { kSource, kProtocol, kMetric, kPolicy, kTask, kSubtask, kValue, kNeeded };
+constexpr std::array<std::string_view, kNeeded> kColumns = {
+    "source", "protocol", "metric", "policy", "task", "subtask", "value"};
+constexpr std::array<std::string_view, 2> kTrials = {"trials_per_published_protocol", "trials"};
+
+std::optional<double> number_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    return std::nullopt;
+  return value;
+}
+
+std::string_view first_line(std::string_view csv) {
+  if (csv.starts_with("\xef\xbb\xbf")) csv.remove_prefix(3);
+  return trimmed(csv.substr(0, csv.find('\n')));
+}
+
+bool is_rate(const PublishedFigure& figure) { return figure.metric == "success_rate"; }
+
+std::string column_of(const PublishedFigure& figure) {
+  if (figure.subtask.empty() || figure.subtask == "average") return figure.task;
+  return figure.task + "_" + figure.subtask;
+}
+
+stats::MeasuredRate measured(const PublishedFigure& figure) { return {figure.value, figure.trials}; }
+
+bool is_same_cell(const PublishedFigure& a, const PublishedFigure& b) {
+  return a.policy == b.policy && a.task == b.task && a.subtask == b.subtask;
+}
+
+// The real rate beside a simulated one: of its own source, else the first in the file.
+const PublishedFigure* real_of(const RateTable& table, const PublishedFigure& simulated) {
+  const PublishedFigure* found = nullptr;
+  for (const PublishedFigure& figure : table.figures) {
+    if (!is_rate(figure) || figure.protocol != kReal || !is_same_cell(figure, simulated)) continue;
+    if (figure.source == simulated.source) return &figure;
+    if (found == nullptr) found = &figure;
+  }
+  return found;
+}
+
+std::string interval_text(const std::optional<stats::Interval>& interval) {
+  return interval ? fmt::format("{:.3f} .. {:.3f}", interval->low, interval->high) : "-";
+}
+
+Json interval_json(const std::optional<stats::Interval>& interval) {
+  return interval ? Json{interval->low, interval->high} : Json();
+}
+
+}  // namespace
+
+bool is_rate_table(std::string_view csv) {
+  const std::vector<std::string> cells = csv_cells(first_line(csv));
+  return std::ranges::all_of(kColumns, [&](std::string_view column) {
+    return std::ranges::find(cells, column) != cells.end();
+  });
+}
+
+Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file) {
+  RateTable table{file, {}, {}};
+  const std::vector<std::string> header = csv_cells(first_line(csv));
+  std::array<std::size_t, kNeeded> at{};
+  for (std::size_t c = 0; c < kNeeded; ++c) {
+    const auto found = std::ranges::find(header, kColumns[c]);
+    if (found == header.end()) {
+      return Failure{Fault::kUsage,
+                     fmt::format("a table of rates has the columns source, protocol, metric, policy, "
+                                 "task, subtask and value, and no `{}` is here",
+                                 kColumns[c]),
+                     file + ":1"};
+    }
+    at[c] = static_cast<std::size_t>(found - header.begin());
+  }
+  std::optional<std::size_t> trials;
+  for (const std::string_view name : kTrials) {
+    const auto found = std::ranges::find(header, name);
+    if (!trials && found != header.end())
+      trials = static_cast<std::size_t>(found - header.begin());
+  }
+  std::size_t number = 0;
+  while (!csv.empty()) {
+    const std::size_t end = std::min(csv.find('\n'), csv.size());
+    const std::string_view line = trimmed(csv.substr(0, end));
+    csv.remove_prefix(std::min(end + 1, csv.size()));
+    if (++number == 1 || line.empty() || line[0] == '#') continue;
+    const std::string where = fmt::format("{}:{}", file, number);
+    const std::vector<std::string> cells = csv_cells(line);
+    if (cells.size() != header.size()) {
+      return Failure{
+          Fault::kUsage,
+          fmt::format("{} cells where the first line has {}", cells.size(), header.size()), where};
+    }
+    PublishedFigure figure;
+    std::string* const to[] = {&figure.source, &figure.protocol, &figure.metric,
+                               &figure.policy, &figure.task,     &figure.subtask};
+    for (std::size_t c = 0; c < kValue; ++c) *to[c] = printable(cells[at[c]], kLongest);
+    const std::string& written = cells[at[kValue]];
+    const auto value = number_of(written);
+    if (!value) {
+      table.unread.push_back(where + ": `" + printable(written, kLongest) + "` is no number");
+      continue;
+    }
+    if (is_rate(figure) && !(*value >= 0 && *value <= 1)) {
+      return Failure{Fault::kUsage,
+                     fmt::format("`{}` is no rate from 0 to 1", printable(written, kLongest)),
+                     where};
+    }
+    figure.value = *value;
+    const std::size_t point = written.find('.');
+    figure.decimals =
+        point == std::string::npos ? 0 : static_cast<int>(written.size() - point - 1);
+    figure.line = number;
+    if (trials && !cells[*trials].empty()) {
+      const auto count = number_of(cells[*trials]);
+      if (!count || *count < 1 || *count > 1e9 || *count != std::floor(*count)) {
+        return Failure{Fault::kUsage,
+                       fmt::format("`{}` is no number of trials", printable(cells[*trials], kLongest)),
+                       where};
+      }
+      figure.trials = *count;
+    }
+    table.figures.push_back(std::move(figure));
+  }
+  if (table.figures.empty()) return Failure{Fault::kUsage, "holds no row of figures", file};
+  return table;
+}
+
+void add_runs(RateTable& table, const Benchmark& benchmark) {
+  const int success = benchmark.find_metric("success");
+  std::vector<PublishedFigure> added;
+  for (const PublishedFigure& real : table.figures) {
+    if (!is_rate(real) || real.protocol != kReal) continue;
+    const bool is_known = std::ranges::any_of(
+        added, [&](const PublishedFigure& figure) { return is_same_cell(figure, real); });
+    for (std::size_t p = 0; p < benchmark.policies.size() && !is_known; ++p) {
+      if (benchmark.policies[p].name != real.policy) continue;
+      stats::Count count;
+      std::vector<int> counted;
+      for (const plan::Plan& plan : benchmark.plan_files) {
+        for (const plan::SetRecord& set : plan.sets()) {
+          if (plan.text(set.name) != column_of(real)) continue;
+          for (const std::uint32_t member : plan.members(set)) {
+            const int task = benchmark.find_task(plan.text(plan.tasks()[member].name));
+            if (task == kAbsent || std::ranges::find(counted, task) != counted.end()) continue;
+            counted.push_back(task);
+            for (const Episode& episode : benchmark.of(static_cast<int>(p), task)) {
+              if (!episode.valid()) continue;
+              count.k += episode.is(success);
+              ++count.n;
+            }
+          }
+        }
+      }
+      if (count.n == 0) continue;
+      PublishedFigure figure = real;
+      figure.source = figure.protocol = kTheseRuns;
+      figure.value = count.rate();
+      figure.trials = static_cast<double>(count.n);
+      figure.line = 0;
+      added.push_back(std::move(figure));
+    }
+  }
+  table.figures.insert(table.figures.end(), added.begin(), added.end());
+}
+
+std::vector<AgreementRow> agreements(const RateTable& table) {
+  struct Sides {
+    std::vector<std::string> policies;
+    std::vector<stats::MeasuredRate> real, simulated;
+  };
+  std::vector<std::array<std::string, 4>> order;
+  std::map<std::array<std::string, 4>, Sides> columns;
+  for (const PublishedFigure& figure : table.figures) {
+    if (!is_rate(figure) || figure.protocol == kReal) continue;
+    const PublishedFigure* real = real_of(table, figure);
+    if (real == nullptr) continue;
+    const std::array<std::string, 4> key = {figure.source, figure.protocol, figure.task,
+                                            figure.subtask};
+    if (!columns.contains(key)) order.push_back(key);
+    Sides& sides = columns[key];
+    if (std::ranges::find(sides.policies, figure.policy) != sides.policies.end()) continue;
+    sides.policies.push_back(figure.policy);
+    sides.real.push_back(measured(*real));
+    sides.simulated.push_back(measured(figure));
+  }
+  std::vector<AgreementRow> rows;
+  for (const auto& key : order) {
+    const Sides& sides = columns[key];
+    if (sides.policies.size() < kFewest) continue;
+    rows.push_back({key[0], key[1], key[2], key[3], sides.policies,
+                    stats::rank_agreement(sides.real, sides.simulated)});
+  }
+  return rows;
+}
+
+std::vector<StatedAgreement> stated_agreements(const RateTable& table,
+                                               const std::vector<AgreementRow>& rows) {
+  std::vector<StatedAgreement> all;
+  for (const PublishedFigure& figure : table.figures) {
+    const bool is_violation = figure.metric == "MMRV";
+    if (!is_violation && figure.metric != "Pearson") continue;
+    for (const AgreementRow& row : rows) {
+      if (row.protocol != figure.protocol || row.task != figure.task ||
+          row.subtask != figure.subtask)
+        continue;
+      if (!is_violation && !row.agreement.correlation) continue;
+      const double computed =
+          is_violation ? row.agreement.violation : *row.agreement.correlation;
+      // What was written has a last digit of its own.
+      const double half = 0.5 * std::pow(10.0, -figure.decimals);
+      const bool is_close = std::abs(computed - figure.value) <= kClose + half + 1e-12;
+      all.push_back({&figure, computed, is_close});
+      break;
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> impossible_rates(const RateTable& table) {
+  std::vector<std::string> sentences;
+  for (const PublishedFigure& figure : table.figures) {
+    if (!is_rate(figure) || figure.trials == 0 || figure.line == 0) continue;
+    const auto n = static_cast<std::int64_t>(figure.trials);
+    const NearestCounts near = nearest_counts(100 * figure.value, figure.decimals - 2, n);
+    if (near.fits) continue;
+    const auto rate = [&](std::int64_t k) {
+      return decimal_text(static_cast<double>(k) / figure.trials, figure.decimals + 1);
+    };
+    sentences.push_back(fmt::format(
+        "{}:{}: {}, {}, {}: {} is no count of {} trials; nearest: {} ({}) and {} ({})", table.file,
+        figure.line, figure.policy, figure.protocol, column_of(figure),
+        decimal_text(figure.value, figure.decimals), n, near.below, rate(near.below), near.above,
+        rate(near.above)));
+  }
+  return sentences;
+}
+
+std::string agreement_text(const RateTable& table) {
+  const std::vector<AgreementRow> rows = agreements(table);
+  std::string text;
+  const std::string* source = nullptr;
+  const std::string* protocol = nullptr;
+  for (const AgreementRow& row : rows) {
+    if (source == nullptr || *source != row.source || *protocol != row.protocol) {
+      source = &row.source, protocol = &row.protocol;
+      text += fmt::format("{}{}{}\n{:<34} {:>8}  {:>6}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n",
+                          text.empty() ? "" : "\n", row.source,
+                          row.source == row.protocol ? "" : ", " + row.protocol, "", "policies",
+                          "MMRV", "95 % by trials", "without one", "Pearson", "95 % by trials",
+                          "without one");
+    }
+    const stats::Agreement& a = row.agreement;
+    const std::string column =
+        row.subtask == "average" || row.subtask.empty() ? row.task : row.task + "_" + row.subtask;
+    text += fmt::format(
+        "{:<34} {:>8}  {:>6.3f}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n", column,
+        row.policies.size(), a.violation, interval_text(a.violation_by_trials),
+        interval_text(a.violation_by_policies),
+        a.correlation ? fmt::format("{:.3f}", *a.correlation) : "-",
+        interval_text(a.correlation_by_trials), interval_text(a.correlation_by_policies));
+  }
+  if (rows.empty())
+    text += "no three policies have a real rate and a simulated one of the same task\n";
+  const std::vector<StatedAgreement> stated = stated_agreements(table, rows);
+  std::map<std::string, std::pair<int, int>> close;  // by source: of how many
+  for (const StatedAgreement& one : stated) {
+    auto& [good, all] = close[one.stated->source];
+    good += one.is_close;
+    ++all;
+  }
+  if (!stated.empty()) text += "\n";
+  for (const auto& [of, counts] : close)
+    text += fmt::format("{}: {} of {} figures are what these rates give, to {}\n", of, counts.first,
+                        counts.second, kClose);
+  for (const StatedAgreement& one : stated) {
+    if (one.is_close) continue;
+    text += fmt::format("{}:{}: {} of {}, {}: {} is written ({}), the rates give {:.3f}\n", table.file,
+                        one.stated->line, one.stated->metric, column_of(*one.stated),
+                        one.stated->protocol, decimal_text(one.stated->value, one.stated->decimals),
+                        one.stated->source, one.computed);
+  }
+  const std::vector<std::string> impossible = impossible_rates(table);
+  if (!impossible.empty())
+    text += fmt::format("\n{} {} no count of successes gives:\n", impossible.size(),
+                        impossible.size() == 1 ? "rate that" : "rates that");
+  for (const std::string& sentence : impossible) text += sentence + "\n";
+  if (!table.unread.empty()) text += "\nleft out:\n";
+  for (const std::string& line : table.unread) text += line + "\n";
+  return text;
+}
+
+Json agreement_json(const RateTable& table) {
+  const std::vector<AgreementRow> rows = agreements(table);
+  Json json = {{"table", table.file}, {"figures", table.figures.size()}};
+  json["agreement"] = Json::array();
+  for (const AgreementRow& row : rows) {
+    const stats::Agreement& a = row.agreement;
+    json["agreement"].push_back(
+        {{"source", row.source},
+         {"protocol", row.protocol},
+         {"task", row.task},
+         {"subtask", row.subtask},
+         {"policies", row.policies},
+         {"mmrv", a.violation},
+         {"mmrv_by_trials", interval_json(a.violation_by_trials)},
+         {"mmrv_without_one", interval_json(a.violation_by_policies)},
+         {"pearson", a.correlation ? Json(*a.correlation) : Json()},
+         {"pearson_by_trials", interval_json(a.correlation_by_trials)},
+         {"pearson_without_one", interval_json(a.correlation_by_policies)}});
+  }
+  json["stated"] = Json::array();
+  for (const StatedAgreement& one : stated_agreements(table, rows)) {
+    json["stated"].push_back({{"line", one.stated->line},
+                              {"source", one.stated->source},
+                              {"protocol", one.stated->protocol},
+                              {"metric", one.stated->metric},
+                              {"task", one.stated->task},
+                              {"subtask", one.stated->subtask},
+                              {"stated", one.stated->value},
+                              {"computed", one.computed},
+                              {"close", one.is_close}});
+  }
+  json["impossible"] = impossible_rates(table);
+  json["left_out"] = table.unread;
+  return json;
+}
+
+}  // namespace probe::report

@@ -1,0 +1,118 @@
+// Rates of simulations against real ones, from a table: by hand, and Table IV of the paper that the
+// measures are from.
+#include "runtime/report/agreement.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "runtime/base/file.h"
+
+namespace probe::report {
+namespace {
+
+// Three policies; the simulation turns the second and the third round.
+const std::string kSmall =
+    "source,protocol,metric,policy,task,subtask,value,trials\n"
+    "P,real,success_rate,a,lift,average,0.900,10\n"
+    "P,real,success_rate,b,lift,average,0.500,10\n"
+    "P,real,success_rate,c,lift,average,0.200,10\n"
+    "P,sim,success_rate,a,lift,average,0.800,20\n"
+    "P,sim,success_rate,b,lift,average,0.100,20\n"
+    "P,sim,success_rate,c,lift,average,0.410,20\n"
+    "P,sim,MMRV,(3),lift,average,0.200,\n"
+    "P,sim,Pearson,(3),lift,average,0.9,\n"
+    "Q,sim,success_rate,a,lift,average,0.5/0.6,20\n";
+
+RateTable parsed(const std::string& csv) {
+  auto table = parse_rate_table(csv, "t.csv");
+  REQUIRE_MESSAGE(table.ok(), to_text(table.failure()));
+  return std::move(table).value();
+}
+std::string refused(const std::string& csv) {
+  const auto table = parse_rate_table(csv, "t.csv");
+  return table.ok() ? "fine" : table.failure().where + ": " + table.failure().message;
+}
+
+}  // namespace
+
+TEST_CASE("a table of rates gives its violations, what it states beside them, and what no count gives") {
+  const RateTable table = parsed(kSmall);
+  CHECK(is_rate_table(kSmall));
+  CHECK(table.unread == std::vector<std::string>{"t.csv:10: `0.5/0.6` is no number"});
+  const auto rows = agreements(table);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
+  CHECK(rows[0].agreement.violation == doctest::Approx(0.2));
+  CHECK(rows[0].agreement.violation_by_trials.has_value());
+  const auto stated = stated_agreements(table, rows);
+  REQUIRE(stated.size() == 2);
+  CHECK(stated[0].is_close);
+  CHECK_FALSE(stated[1].is_close);
+  const auto impossible = impossible_rates(table);
+  REQUIRE(impossible.size() == 1);
+  CHECK(impossible[0] ==
+        "t.csv:7: c, sim, lift: 0.410 is no count of 20 trials; nearest: 8 (0.4000) and 9 (0.4500)");
+  const std::string text = agreement_text(table);
+  CHECK_MESSAGE(text.find("P: 1 of 2 figures are what these rates give, to 0.003") != text.npos, text);
+  CHECK_MESSAGE(text.find("t.csv:9: Pearson of lift, sim: 0.9 is written") != text.npos, text);
+}
+
+TEST_CASE("real rates of the same source come first, else the first in the file") {
+  const RateTable table = parsed(kSmall +
+                                 "R,sim,success_rate,a,lift,average,0.9,\n"
+                                 "R,sim,success_rate,b,lift,average,0.5,\n"
+                                 "R,sim,success_rate,c,lift,average,0.2,\n");
+  const auto rows = agreements(table);
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[1].source == "R");
+  CHECK(rows[1].agreement.violation == 0);
+  CHECK_FALSE(rows[1].agreement.violation_by_trials);
+}
+
+TEST_CASE("two policies are no agreement, and another layout is refused with its place") {
+  CHECK(agreements(parsed(kSmall.substr(0, kSmall.find("P,sim,success_rate,c")))).empty());
+  CHECK(refused("policy,metric,avg\n") ==
+        "t.csv:1: a table of rates has the columns source, protocol, metric, policy, task, subtask and "
+        "value, and no `source` is here");
+  const std::string header = kSmall.substr(0, kSmall.find('\n') + 1);
+  CHECK(refused(header) == "t.csv: holds no row of figures");
+  CHECK(refused(header + "P,real,success_rate,a,lift,average,0.9\n") ==
+        "t.csv:2: 7 cells where the first line has 8");
+  CHECK(refused(header + "P,real,success_rate,a,lift,average,1.9,10\n") ==
+        "t.csv:2: `1.9` is no rate from 0 to 1");
+  CHECK(refused(header + "P,real,success_rate,a,lift,average,0.9,ten\n") ==
+        "t.csv:2: `ten` is no number of trials");
+}
+
+TEST_CASE("Table IV of arXiv:2405.05941 is redone to 0.003, and nine of its rates are no counts") {
+  const auto csv = read_file(VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_table.csv");
+  if (!csv) {
+    MESSAGE("skipped: the published numbers of the Google robot are not on this machine");
+    return;
+  }
+  const RateTable table = parsed(*csv);
+  CHECK(table.figures.size() + table.unread.size() == 408);
+  const auto rows = agreements(table);
+  const std::string source = "arXiv:2405.05941v1 Table IV";
+  std::size_t of_table = 0, redone = 0;
+  for (const StatedAgreement& one : stated_agreements(table, rows)) {
+    if (one.stated->source != source) continue;
+    ++of_table;
+    redone += one.is_close;
+    CAPTURE(one.stated->line);
+    CHECK(one.is_close);
+  }
+  CHECK(of_table == 36);  // two measures of nine columns under two protocols
+  CHECK(redone == of_table);
+  std::size_t impossible = 0;
+  for (const std::string& sentence : impossible_rates(table)) {
+    const std::size_t colon = sentence.find(".csv:") + 5;
+    const auto line = static_cast<std::size_t>(std::stoul(sentence.substr(colon)));
+    const auto figure = std::ranges::find(table.figures, line, &PublishedFigure::line);
+    impossible += figure != table.figures.end() && figure->source == source;
+  }
+  CHECK(impossible == 9);
+}
+
+}  // namespace probe::report
