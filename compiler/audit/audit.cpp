@@ -10,6 +10,7 @@
 
 #include "compiler/audit/questions.h"
 #include "compiler/audit/rules.h"
+#include "compiler/audit/stage.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
 #include "runtime/plan/axes.h"
@@ -32,7 +33,7 @@ struct KindName {
   Kind kind;
   std::string_view name, title;
 };
-constexpr std::array<KindName, 24> kKinds = {{
+constexpr std::array<KindName, 28> kKinds = {{
     {Kind::kConfounded, "confounded", "comparisons that move more than one axis"},
     {Kind::kAcrossScenes, "across_scenes", "comparisons across scenes"},
     {Kind::kAcrossLayouts, "across_layouts", "comparisons across layouts"},
@@ -51,10 +52,15 @@ constexpr std::array<KindName, 24> kKinds = {{
     {Kind::kOnFixture, "on_fixture",
      "success of an object that lies on a fixture beside the target"},
     {Kind::kHeld, "held", "success of an object that is still held above the target"},
+    {Kind::kInTheAir, "in_the_air", "success of an object in the air that nothing touches"},
+    {Kind::kTouchedOnce, "touched_once",
+     "success at the last step that counts a touch which may be over"},
     {Kind::kHoldsAtStart, "holds_at_start", "success that holds before anything moves"},
     {Kind::kSwappedOrder, "swapped_order",
      "success that does not care for the order that the instruction says"},
     {Kind::kSolution, "solution", "solutions that do not do what success asks for"},
+    {Kind::kFallsOn, "falls_on", "starts in which objects fall onto one another"},
+    {Kind::kUnfelt, "unfelt", "parts of fixtures that are seen where nothing is felt"},
     {Kind::kNamesAnswer, "names_answer", "questions whose words name the answer"},
     {Kind::kOneAnswer, "one_answer", "questions with one answer throughout"},
     {Kind::kOneLetter, "one_letter", "questions whose right option stands at one place"},
@@ -84,6 +90,8 @@ class Auditor {
     find_duplicates();
     find_namesakes();
     PROBE_TRY(find_rules());
+    find_falls();
+    find_unfelt();
     find_questions();
     find_warnings();
     find_unheld();
@@ -305,6 +313,12 @@ class Auditor {
     constexpr Rule kOneHeld = {Kind::kHeld, "success",
                                "`success` is true when one of the things that are put somewhere is "
                                "still held above it and nothing else touches it"};
+    constexpr Rule kAir = {Kind::kInTheAir, "success",
+                           "`success` is true of a source in the air that nothing touches: thrown, or "
+                           "falling"};
+    constexpr Rule kTouched = {Kind::kTouchedOnce, "success",
+                               "`success` counts a touch of an earlier step, whatever is so at the "
+                               "last one"};
     constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
                              "`success` is true before anything has moved: things begin so"};
     std::map<std::uint32_t, bool> counts_target;  // by program
@@ -342,6 +356,9 @@ class Auditor {
         } else {
           audit_.untried.push_back(name_of(index));
         }
+        PROBE_ASSIGN(const bool in_the_air, passes_in_the_air(plan_, index, *success));
+        if (in_the_air) add_rule(kAir, index);
+        if (at_end && counts_an_earlier_touch(plan_, index, *success)) add_rule(kTouched, index);
         PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
         if (begun) add_rule(kBegun, index);
         PROBE_TRY(find_swapped_order(index));
@@ -357,6 +374,43 @@ class Auditor {
       }
     }
     return {};
+  }
+
+  // By layout: what was dropped above something else comes to rest on it, or beside it.
+  void find_falls() {
+    std::map<std::string, Finding> by_message;
+    for (const std::uint32_t index : scope_) {
+      const Falls falls = falls_in(plan_, index);
+      if (falls.starts == 0) continue;
+      std::string message = fmt::format(
+          "in {} of {} starts two objects are dropped onto one another, {} of them in start {}",
+          falls.starts, falls.of, falls.first_pair, falls.first);
+      Finding& finding = by_message[message];
+      finding.kind = Kind::kFallsOn;
+      finding.tasks.push_back(name_of(index));
+      if (finding.message.empty()) finding.place = task_place(index);
+      finding.message = std::move(message);
+    }
+    for (auto& [message, finding] : by_message) add(std::move(finding));
+  }
+
+  void find_unfelt() {
+    std::map<std::uint32_t, std::vector<std::string>> users;  // by fixture
+    for (const std::uint32_t index : scope_) {
+      const plan::SceneRecord& scene = plan_.scenes()[plan_.tasks()[index].scene];
+      for (const std::uint32_t fixture : plan::slice_of(plan_.tables().list, scene.fixtures))
+        users[fixture].push_back(name_of(index));
+    }
+    for (const auto& [fixture, tasks] : users) {
+      for (std::string& message : unfelt_in(compilation_, plan_, fixture)) {
+        Finding finding;
+        finding.kind = Kind::kUnfelt;
+        finding.tasks = tasks;
+        finding.message = std::move(message);
+        finding.place = task_place(*plan_.find_task(tasks.front()));
+        add(std::move(finding));
+      }
+    }
   }
 
   // "First A, then B" of which success is the same when B is put first.

@@ -215,6 +215,46 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
   return false;
 }
 
+Result<bool> passes_in_the_air(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  constexpr double kAbove = 0.3;  // m
+  const auto roles = plan::roles_of(plan.tables(), plan.tasks()[task]);
+  if (!roles.has_source() || roles.has_both()) return false;
+  vm::MadeUpWorld world = vm::make_up_world(plan, task);
+  PROBE_ASSIGN(const bool is_so_anyway, vm::judge_world(plan, task, success, world));
+  if (is_so_anyway) return false;
+  world.put(world.source, world.sample.bodies[world.source].position + Vec3(0, 0, kAbove));
+  return vm::judge_world(plan, task, success, std::move(world));
+}
+
+bool counts_an_earlier_touch(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  std::vector<plan::Instruction> defining;  // by register
+  std::vector<std::pair<std::uint16_t, bool>> open;
+  for (const plan::Instruction& in : plan.code(plan.programs()[plan.tasks()[task].program])) {
+    const plan::OpInfo& op = *plan::find_op(in.op);
+    if (op.result != plan::Kind::kUnused) defining.push_back(in);
+    if (op.b == plan::Kind::kMetric && in.b == success) open.emplace_back(in.a, false);
+  }
+  while (!open.empty()) {
+    const auto [at, once] = open.back();
+    open.pop_back();
+    const plan::Instruction& in = defining[at];
+    const plan::OpInfo& op = *plan::find_op(in.op);
+    if (once && op.op == plan::Op::kIMP) return true;
+    // What was so once of other things too (lifted, and touched) is a history of its own; only a
+    // touch by itself is meant.
+    const bool compares = op.op == plan::Op::kLT || op.op == plan::Op::kLE;
+    if (once && !compares) continue;
+    const bool below = op.op == plan::Op::kONCE;
+    const auto follow = [&](plan::Kind kind, std::uint16_t operand) {
+      if (kind == plan::Kind::kBool || kind == plan::Kind::kReal || kind == plan::Kind::kVector)
+        open.emplace_back(operand, below || once);
+    };
+    follow(op.a, in.a);
+    follow(op.b, in.b);
+  }
+  return false;
+}
+
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const auto bodies = plan.bodies(record);

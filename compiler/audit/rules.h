@@ -39,6 +39,13 @@ struct SeveralPut {
 Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
                                      std::uint32_t success);
 
+// Of a task with a source and no target: whether metric `success` is true of one that is 30 cm above
+// where it lay and touches nothing, and is not so where it lies.
+Result<bool> passes_in_the_air(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
+// Whether a metric that is read at the end depends on whether two bodies have ever touched.
+bool counts_an_earlier_touch(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
 // Whether metric `success` is false unless fingers touch for some steps on end, the last one
 // included: a condition held over steps that nothing latches.
 bool ends_in_grasp(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);

@@ -513,3 +513,42 @@ suite own trained on bridge_v2 { tasks { kind, odd, covers, touched, plain }; se
   // Of the suite as published next to all.
   CHECK(published().audit.held + 3 >= published().audit.heard);
 }
+
+TEST_CASE("a rule that a thing in the air passes, and one that counts a touch that was, are found") {
+  const Audited own = audit_text(R"(
+predicate risen(o: object) = height(o) - height(start(o)) > 2cm
+metrics raised { success = at end risen(source) }
+metrics taken { success = at end (risen(source) and any f in fingers: impulse(f, source) > 1e-6Ns) }
+metrics brushed { success = at end (height(target) > 0cm and once impulse(source, target) > 1e-6Ns) }
+layout alone { cells spots = grid 2 x 1 at (-16cm, 0cm) spread (7.5cm, 0cm); place source in distinct spots
+               orient by rest; drop 50cm settle 0.5s }
+task lifted { scene table; layout alone; metrics raised; horizon 60 steps; source carrot; say "pick up {the source}" }
+task held like lifted { metrics taken }
+task met like on_table { source carrot; target plate; metrics brushed }
+suite own trained on bridge_v2 { tasks { lifted, held, met }; seeds 0 }
+)");
+  CHECK(own.find(Kind::kInTheAir, "lifted") != nullptr);
+  CHECK(own.find(Kind::kInTheAir, "held") == nullptr);
+  CHECK(own.find(Kind::kTouchedOnce, "met") != nullptr);
+  CHECK(own.find(Kind::kTouchedOnce, "held") == nullptr);
+}
+
+TEST_CASE("the Google robot's suite: what is irregular in the release is found, and mended in the other") {
+  const Audited google = audit_file(VLAPROBE_SOURCE_DIR "/suite/google.probe");
+  CHECK(google.find(Kind::kInTheAir, "pick_standing") != nullptr);
+  CHECK(google.find(Kind::kTouchedOnce, "place_apple") != nullptr);
+  const audit::Finding* crowded = google.find(Kind::kFallsOn, "pick_horizontal_among_more");
+  REQUIRE(crowded != nullptr);
+  CHECK_MESSAGE(crowded->message.find("of 25 starts two objects are dropped onto one another") !=
+                    std::string::npos,
+                crowded->message);
+  const audit::Finding* handle = google.find(Kind::kUnfelt, "open_top");
+  REQUIRE(handle != nullptr);
+  CHECK_MESSAGE(handle->message.find("3.25cm beyond what is felt") != std::string::npos,
+                handle->message);
+  const Audited clean = audit_file(VLAPROBE_SOURCE_DIR "/suite/google_clean.probe");
+  for (const audit::Finding& finding : clean.audit.findings) {
+    const bool is_silenced = finding.kind == Kind::kWarning || finding.allowed;
+    CHECK_MESSAGE(is_silenced, finding.message);
+  }
+}
