@@ -92,8 +92,9 @@ struct Finder {
         if (!name.starts_with(".") && !entry.is_symlink(error)) below.push_back(path);
       } else if (name.starts_with("info_") && path.extension() == ".json") {
         databases.push_back(path);
-      } else if (name == "wx250s.urdf" && !data.urdf) {
-        data.urdf = path;
+      } else if (path.extension() == ".urdf") {
+        data.urdfs.try_emplace(name, path);
+        if (name == "wx250s.urdf" && !data.urdf) data.urdf = path;
       }
     }
     std::sort(below.begin(), below.end());

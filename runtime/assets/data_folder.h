@@ -25,6 +25,7 @@ struct DataFolder {
   std::map<std::string, ModelInfo> infos;                       // of the databases, by id
   std::map<std::string, std::filesystem::path> photos, stages;  // by file name
   std::optional<std::filesystem::path> urdf;                    // wx250s.urdf
+  std::map<std::string, std::filesystem::path> urdfs;           // all descriptions, by file name
   std::vector<Failure> odd;  // databases and entries that cannot be used
 };
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <span>
 
 #include "runtime/assets/catalogue_text.h"
 #include "runtime/assets/data_folder.h"
@@ -55,12 +56,22 @@ class Import {
 
   Result<ImportReport> run() {
     std::set<std::string> known;
-    for (const KnownModel& model : kKnownModels) {
+    const bool is_google = options_.suite == ImportFor::kGoogle;
+    const std::span<const KnownModel> models =
+        is_google ? std::span<const KnownModel>(kGoogleModels) : kKnownModels;
+    for (const KnownModel& model : models) {
       known.emplace(model.id);
       PROBE_TRY(add_model(std::string(model.id), std::string(model.folder), model.scale));
     }
-    for (const KnownScene& scene : kKnownScenes) PROBE_TRY(add_scene(scene));
-    PROBE_TRY(add_robot());
+    if (is_google) {
+      for (const std::string_view photo : kGooglePhotos) PROBE_TRY(add_photo(std::string(photo)));
+      for (const KnownRobot& robot : kGoogleRobots) PROBE_TRY(add_robot(robot));
+      for (const std::string_view name : kGoogleOwn)
+        PROBE_TRY(miss(std::string(name), "the suite's own", options_.own));
+    } else {
+      for (const KnownScene& scene : kKnownScenes) PROBE_TRY(add_scene(scene));
+      PROBE_TRY(add_robot());
+    }
     // The rest of the models keep their names.
     for (const auto& [id, folder] : data_.models) {
       if (known.contains(id)) continue;
@@ -244,7 +255,54 @@ class Import {
     return {};
   }
 
+  // A photo alone. One of another shape is taken by nobody: the picture would be of other places.
+  Status add_photo(const std::string& file) {
+    const std::string name = "scenes/google/" + file;
+    const auto photo = data_.photos.find(file);
+    if (photo == data_.photos.end()) return miss(name, "no photo " + file);
+    auto bytes = read_file(photo->second.string());
+    auto texture =
+        bytes ? scene::decode_image(std::as_bytes(std::span(*bytes)), photo->second.string())
+              : Result<scene::Texture>(bytes.failure());
+    if (!texture) return miss(name, short_text(texture.failure(), options_.from));
+    const std::string size = fmt::format("{} x {}", texture->width, texture->height);
+    // The same rule as where the photo is shown, a hundredth of the shape.
+    if (std::abs(kGoogleHeight * texture->width - kGoogleWidth * texture->height) >
+        0.01 * kGoogleHeight * texture->width) {
+      return miss(name, fmt::format("photo {} is {}, and the camera's picture {} x {}: one of another "
+                                    "shape must be cut first",
+                                    file, size, kGoogleWidth, kGoogleHeight));
+    }
+    PROBE_TRY(write(name, *bytes, relative(photo->second)));
+    say(Verdict::kTaken, name, size);
+    return {};
+  }
+
   // ---- robot
+
+  Status add_robot(const KnownRobot& known) {
+    const std::string folder = "robots/google_released";
+    const std::string name = folder + "/" + std::string(known.name) + ".urdf";
+    const auto urdf = data_.urdfs.find(std::string(known.file));
+    if (urdf == data_.urdfs.end()) return miss(name, "no " + std::string(known.file));
+    const auto robot = convert_robot(urdf->second.string(), limits_);
+    if (!robot) return miss(name, short_text(robot.failure(), options_.from));
+    // Colourings share meshes of one name: each has a folder of its own.
+    const std::string own = "meshes/" + std::string(known.name) + "/";
+    for (const RobotFiles::File& file : robot->meshes) {
+      const std::string below = own + file.path.substr(file.path.rfind('/') + 1);
+      PROBE_TRY(write(folder + "/" + below, file.bytes, relative(file.source)));
+    }
+    std::string text = robot->urdf;
+    for (std::size_t at = 0; (at = text.find("filename=\"meshes/", at)) != text.npos;) {
+      at += std::string_view("filename=\"").size();
+      text.replace(at, std::string_view("meshes/").size(), own);
+    }
+    PROBE_TRY(write(name, text, relative(urdf->second)));
+    say(Verdict::kTaken, name,
+        fmt::format("{}: {} mesh files", known.file, robot->meshes.size()));
+    return {};
+  }
 
   Status add_robot() {
     const std::string name = "robots/widowx";
@@ -264,9 +322,12 @@ class Import {
 
   // Says so, and takes ours if that was asked for.
   Status miss(const std::string& name, const std::string& why) {
-    const fs::path ours = fs::path(options_.fill_from) / name;
+    return miss(name, why, options_.fill_from);
+  }
+  Status miss(const std::string& name, const std::string& why, const std::string& from) {
+    const fs::path ours = fs::path(from) / name;
     std::error_code error;
-    if (options_.fill_from.empty() || !fs::is_directory(ours, error)) {
+    if (from.empty() || !fs::is_directory(ours, error)) {
       say(Verdict::kMissing, name, why);
       return {};
     }
@@ -277,7 +338,7 @@ class Import {
     std::sort(paths.begin(), paths.end());
     for (const fs::path& path : paths) {
       PROBE_ASSIGN(const std::string bytes, read_file(path.string()));
-      const std::string below = path.lexically_relative(options_.fill_from).generic_string();
+      const std::string below = path.lexically_relative(from).generic_string();
       PROBE_TRY(out_.write(below, bytes, "vlaprobe's own " + below));
     }
     say(Verdict::kFilled, name, why + ": vlaprobe's own is taken");

@@ -9,11 +9,18 @@
 
 namespace probe::assets {
 
+// Whose assets the result stands for: the models of a suite's tasks have its names and sizes.
+enum class ImportFor { kBridge, kGoogle };
+
 struct ImportOptions {
   std::string from, to;
   // Takes what the suite needs and the data does not have from here, an asset folder of ours.
   // Empty: nothing is filled in.
   std::string fill_from;
+  ImportFor suite = ImportFor::kBridge;
+  // An asset folder of ours: for kGoogle the suite's own robot, cabinet, rooms and textures are
+  // copied from here, which the data has nothing for. Empty: they are missing.
+  std::string own = {};
 };
 
 enum class Verdict { kTaken, kOdd, kMissing, kFilled };

@@ -39,6 +39,23 @@ inline constexpr std::array kKnownModels{
     KnownModel{"sink", "fixtures/sink", 1},
 };
 
+// The same for suite/google.probe, whose cans and orange are of double size. 7up, Sprite and Fanta
+// are painted cans there.
+inline constexpr std::array kGoogleModels{
+    KnownModel{"opened_coke_can", "objects/coke_can", 0.5},
+    KnownModel{"opened_pepsi_can", "objects/pepsi_can", 0.5},
+    KnownModel{"opened_redbull_can", "objects/slim_can", 1},
+    KnownModel{"blue_plastic_bottle", "objects/water_bottle", 1},
+    KnownModel{"apple", "objects/apple", 1},
+    KnownModel{"orange", "objects/orange", 0.5},
+    KnownModel{"sponge", "objects/long_sponge", 1},
+    KnownModel{"bridge_spoon_generated_modified", "objects/spoon", 1},
+    KnownModel{"bridge_carrot_generated_modified", "objects/carrot", 1},
+    KnownModel{"eggplant", "objects/eggplant", 1},
+    KnownModel{"green_cube_3cm", "objects/green_cube", 1},
+    KnownModel{"yellow_cube_3cm", "objects/yellow_cube", 1},
+};
+
 // The target plane in the sink: it is felt and never drawn, the photo shows the basket.
 inline constexpr std::string_view kUnseenModel = "dummy_sink_target_plane";
 
@@ -51,6 +68,38 @@ inline constexpr std::array kKnownScenes{
     KnownScene{"table", "bridge_real_eval_1.png", "bridge_table_1_v1.glb"},
     KnownScene{"sink", "bridge_sink.png", "bridge_table_1_v2.glb"},
 };
+
+// Pictures that suite/google/photos.probe puts behind its scenes, below scenes/google. They are of
+// half the camera's size.
+inline constexpr std::array<std::string_view, 11> kGooglePhotos{
+    "google_coke_can_real_eval_1.png", "google_move_near_real_eval_1.png", "open_drawer_a0.png",
+    "open_drawer_a1.png",              "open_drawer_a2.png",               "open_drawer_b0.png",
+    "open_drawer_b1.png",              "open_drawer_b2.png",               "open_drawer_c0.png",
+    "open_drawer_c1.png",              "open_drawer_c2.png"};
+inline constexpr int kGoogleWidth = 640, kGoogleHeight = 512;  // of the camera
+
+// The Google robot and its colourings, below robots/google_released: descriptions in the release.
+struct KnownRobot {
+  std::string_view file;  // of the release
+  std::string_view name;
+};
+inline constexpr std::array kGoogleRobots{
+    KnownRobot{"google_robot_meta_sim_fix_wheel_fix_fingertip.urdf", "google_robot"},
+    KnownRobot{
+        "google_robot_meta_sim_fix_wheel_fix_fingertip_recolor_tabletop_visual_matching_1.urdf",
+        "google_robot_tabletop_1"},
+    KnownRobot{
+        "google_robot_meta_sim_fix_wheel_fix_fingertip_recolor_tabletop_visual_matching_2.urdf",
+        "google_robot_tabletop_2"},
+    KnownRobot{
+        "google_robot_meta_sim_fix_wheel_fix_fingertip_recolor_cabinet_visual_matching_1.urdf",
+        "google_robot_cabinet_1"},
+};
+
+// What suite/google.probe is written for and no release has in that form.
+inline constexpr std::array<std::string_view, 5> kGoogleOwn{
+    "robots/google_robot", "fixtures/google_station", "scenes/google_table", "scenes/google_room",
+    "textures"};
 
 // Stages have y up. The reference turns them by 90 degrees about x and moves them by this, metres
 // (mani_skill2_real2sim/envs/custom_scenes/base_env.py).

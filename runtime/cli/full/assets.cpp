@@ -18,14 +18,23 @@ constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 
 struct AssetsArguments {
   assets::ImportOptions options;
+  std::string suite = "intact";
   bool fill = false;
 };
 
 int import_verb(AssetsArguments& arguments) {
-  if (arguments.fill) {
+  const bool is_google = arguments.suite == "google";
+  if (!is_google && arguments.suite != "intact") {
+    return report(Failure{Fault::kUsage,
+                          fmt::format("--for takes intact or google, found `{}`", arguments.suite),
+                          ""});
+  }
+  if (is_google) arguments.options.suite = assets::ImportFor::kGoogle;
+  if (arguments.fill || is_google) {
     auto own = find_asset_root();
     if (!own) return report(own.failure());
-    arguments.options.fill_from = own->folders().front();
+    if (arguments.fill) arguments.options.fill_from = own->folders().front();
+    if (is_google) arguments.options.own = own->folders().front();
   }
   auto imported = assets::import_data(arguments.options);
   if (!imported) return report(imported.failure());
@@ -37,7 +46,7 @@ int import_verb(AssetsArguments& arguments) {
   say("{}: {} taken, {} odd, {} missing, {} filled in; {} files, {:.1f} MB\n", arguments.options.to,
       counts[0], counts[1], counts[2], counts[3], imported->files,
       static_cast<double>(imported->bytes) / 1e6);
-  say("next: vlaprobe check suite/intact.probe --assets {}\n", arguments.options.to);
+  say("next: vlaprobe check suite/{}.probe --assets {}\n", arguments.suite, arguments.options.to);
   return kFine;
 }
 
@@ -141,6 +150,8 @@ void add_assets(Verb app, int& exit) {
   import.add_option("DIR", arguments->options.from, "the repository, its data folder, or above")
       .required();
   import.add_option("-o,--out", arguments->options.to, "folder to make").required();
+  import.add_option("--for", arguments->suite,
+                    "suite whose tasks the models are for, intact (default) or google");
   import.add_flag("--fill", arguments->fill,
                   "take what the suite needs and DIR lacks from vlaprobe's own assets");
   import.refuse_empty_values();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/assets/asset_check.h"
 #include "runtime/assets/catalogue_text.h"
@@ -116,6 +117,111 @@ TEST_CASE("what is missing is taken from elsewhere only when that was asked for,
   CHECK(*read_file(folder / "out/objects/nut/visual.glb") ==
         *read_file(own + "/objects/nut/visual.glb"));
   CHECK(fs::exists(folder / "out/robots/widowx/wx250s.urdf"));
+}
+
+// The Google robot's half: two cans of which one has no picture mesh, photos of two sizes and one of
+// another shape, the robot and a colouring whose texture is not there.
+void make_google_data(const std::string& root) {
+  const std::string models = root + "/data/custom/models/";
+  write_text(models + "opened_coke_can/textured.dae", dae_box("Z_UP"));
+  write_text(models + "opened_coke_can/collision.obj", obj_box());
+  write_text(models + "opened_redbull_can/collision.obj", obj_box());
+  fs::create_directories(root + "/data/real_inpainting");
+  const auto photo = [&](const char* name, int width, int height) {
+    REQUIRE(scene::write_png(
+                root + "/data/real_inpainting/" + name, width, height,
+                std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 50))
+                .ok());
+  };
+  photo("open_drawer_a0.png", 320, 256);
+  photo("open_drawer_a1.png", 640, 512);
+  photo("open_drawer_b0.png", 320, 240);
+  const std::string description = root + "/descriptions/googlerobot_description/";
+  const std::string stem = "google_robot_meta_sim_fix_wheel_fix_fingertip";
+  const auto robot = [](const std::string& mesh) {
+    return "<robot name=\"meta\"><link name=\"base\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" "
+           "ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial><visual><geometry><mesh "
+           "filename=\"" +
+           mesh + "\"/></geometry></visual></link></robot>";
+  };
+  write_text(description + "3obj/arm.dae", dae_box("Z_UP"));
+  write_text(description + stem + ".urdf", robot("3obj/arm.dae"));
+  write_text(description + "3obj_recolor/arm.dae", dae_box("Z_UP", 1, "brown.png"));
+  write_text(description + stem + "_recolor_cabinet_visual_matching_1.urdf",
+             robot("3obj_recolor/arm.dae"));
+}
+
+TEST_CASE("for the Google robot's suite: what is there under its names, what is not by name") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  const auto report =
+      import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle});
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(says(line_of(*report, "objects/coke_can"), "opened_coke_can at 0.5: "));
+  CHECK(says(line_of(*report, "objects/slim_can"),
+             "missing opened_redbull_can has no textured.glb"));
+  CHECK(says(line_of(*report, "objects/water_bottle"), "missing no model `blue_plastic_bottle`"));
+  CHECK_FALSE(fs::exists(folder / "out/objects/slim_can"));
+  // A photo of half the picture's size is shown, one of another shape is not taken.
+  CHECK(line_of(*report, "scenes/google/open_drawer_a0.png") == "taken 320 x 256");
+  CHECK(line_of(*report, "scenes/google/open_drawer_a1.png") == "taken 640 x 512");
+  CHECK(says(line_of(*report, "scenes/google/open_drawer_b0.png"),
+             "missing photo open_drawer_b0.png is 320 x 240, and the camera's picture 640 x 512"));
+  CHECK_FALSE(fs::exists(folder / "out/scenes/google/open_drawer_b0.png"));
+  CHECK(says(line_of(*report, "scenes/google/open_drawer_c2.png"), "missing no photo"));
+  // A colouring without its texture would be the plain robot.
+  CHECK(says(line_of(*report, "robots/google_released/google_robot.urdf"), "1 mesh files"));
+  CHECK(fs::exists(folder / "out/robots/google_released/meshes/google_robot/arm.glb"));
+  const std::string brown = line_of(*report, "robots/google_released/google_robot_cabinet_1.urdf");
+  CHECK(says(brown, "missing "));
+  CHECK(says(brown, "brown.png"));
+  CHECK_FALSE(fs::exists(folder / "out/robots/google_released/google_robot_cabinet_1.urdf"));
+
+  // Nothing of ours is taken, until it is asked for.
+  const auto filled = import_data({folder / "repo", folder / "filled",
+                                   VLAPROBE_SOURCE_DIR "/assets", ImportFor::kGoogle});
+  REQUIRE(filled.ok());
+  CHECK(says(line_of(*filled, "objects/slim_can"), "filled "));
+  CHECK(fs::exists(folder / "filled/objects/slim_can/visual.glb"));
+}
+
+TEST_CASE("tasks whose thing has no mesh in an imported folder are named, with the thing") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  REQUIRE(import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle,
+                       VLAPROBE_SOURCE_DIR "/assets"})
+              .ok());
+  const std::string file = VLAPROBE_SOURCE_DIR "/suite/google.probe";
+  CompileOptions options;
+  options.asset_root = AssetRoot::chosen({folder / "out"});
+  options.suite = "google";
+  const auto built = build(std::span<const std::string>(&file, 1), options);
+  REQUIRE(built.ok());
+  CHECK_FALSE(built->ok);
+  const std::string said = render_text(built->diagnostics, built->sources);
+  CHECK(says(said, "asset `objects/slim_can/visual"));
+  CHECK(says(said, "`coke_near_redbull_by_apple`"));
+  CHECK(says(said, "asset `objects/water_bottle/visual"));
+}
+
+TEST_CASE("the released assets of the Google robot lack three things' meshes, and no photo") {
+  const std::string released = VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_assets";
+  if (!fs::exists(released)) {
+    MESSAGE("skipped: the Google robot's released assets are not on this machine");
+    return;
+  }
+  TemporaryFolder folder;
+  const auto report = import_data({released, folder / "out", "", ImportFor::kGoogle});
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  std::vector<std::string> missing;
+  for (const ImportLine& line : report->lines) {
+    if (line.verdict == Verdict::kMissing) missing.push_back(line.name);
+    MESSAGE(to_word(line.verdict) << " " << line.name << "  " << line.text);
+  }
+  for (const char* name : {"objects/slim_can", "objects/water_bottle", "objects/eggplant"})
+    CHECK(std::ranges::find(missing, name) != missing.end());
+  CHECK(std::ranges::none_of(missing,
+                             [](const std::string& name) { return name.starts_with("scenes/google/"); }));
 }
 
 TEST_CASE("a folder without such data, or that is none, says what was looked for") {
