@@ -229,6 +229,10 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
       append(state, robot::to_rotation_vector(rotation));
       state.push_back(measured.openness);
       break;
+    case StateLayout::kXyzXyzwClosedness:
+      state.insert(state.end(), {rotation.x(), rotation.y(), rotation.z(), rotation.w()});
+      state.push_back(1 - measured.openness);
+      break;
     case StateLayout::kXyzRotvecFingers:
       append(state, robot::to_rotation_vector(rotation));
       if (!has_fingers)

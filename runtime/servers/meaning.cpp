@@ -188,7 +188,8 @@ namespace {
 // the way, said twice, would be all of it. With a threshold each is all the way, which is the same.
 Status check_gripper(const Profile& profile, const robot::KindRow& law, const std::string& server) {
   const bool takes_steps = law.kind == robot::ControlKind::kEeDeltaInterpolated;
-  const bool is_said = is_step(profile.action_gripper);
+  const bool is_sticky = profile.action_sticky != StickyRule::kNone;
+  const bool is_said = is_step(profile.action_gripper) || is_sticky;
   if (takes_steps ? is_said || profile.action_threshold.has_value() : !is_said) return {};
   const std::string_view word =
       std::ranges::find(kGrippers, profile.action_gripper, &Word<GripperRange>::value)->text;
@@ -200,7 +201,7 @@ Status check_gripper(const Profile& profile, const robot::KindRow& law, const st
           "`, which takes " +
           (takes_steps
                ? "how far it is to go (`action.gripper = step`, or a threshold that opens or "
-                 "closes it whole: `action.threshold`)"
+                 "closes it whole: `action.threshold`, or openings that are held: `action.sticky`)"
                : "an opening (`action.gripper = signed`)"),
       server};
 }

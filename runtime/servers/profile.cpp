@@ -30,7 +30,7 @@ struct Number {
 using Slot = std::variant<std::string*, Count, Number, std::optional<double>*, std::vector<double>*,
                           std::vector<ImageRule>*, std::vector<StateRule>*, ActionForm*,
                           ActionUnits*, Protocol*, StateLayout*, StateFrame*, NumberType*,
-                          Normalisation*, RotationForm*, GripperRange*, PromptCase*, FullStop*,
+                          Normalisation*, RotationForm*, GripperRange*, StickyRule*, PromptCase*, FullStop*,
                           Ensemble*, ConnectionUse*, CheckpointUse*, WorldsAtOnce*>;
 
 struct Field {
@@ -95,6 +95,14 @@ constexpr Field kFields[] = {
      "the last number: -1 closed 1 open, 0 closed 1 open, or the other way round"},
     {"action.threshold", [](Profile& p) -> Slot { return &p.action_threshold; },
      "above it the last number is 1, else the least; none: kept as it is"},
+    {"action.sticky", [](Profile& p) -> Slot { return &p.action_sticky; },
+     "under `ee_delta_interpolated`: an opening as how far to go, a switch held; against the last "
+     "answer, the last switch, half way"},
+    {"action.sticky_steps",
+     [](Profile& p) -> Slot {
+       return Count{&p.action_sticky_steps, kMostActions, ""};
+     },
+     "for so many steps"},
     {"action.normalised", [](Profile& p) -> Slot { return &p.action_statistics.kind; },
      "how raw answers are to be taken back; servers usually do it themselves"},
     {"action.low", [](Profile& p) -> Slot { return &p.action_statistics.low; },

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/servers/sticky_gripper.h"
 
 namespace probe::servers {
 
@@ -42,6 +43,7 @@ enum class StateLayout {
   kXyzRpyOpenness,     // 7
   kXyzRpyPadOpenness,  // 8, the pad is 0
   kXyzRotvecOpenness,  // 7
+  kXyzXyzwClosedness,  // 8, as the data of RT-1 (fractal20220817_data)
   kXyzRotvecFingers,   // 8
   kJoints,
   kJointsOpenness,  // without the fingers
@@ -168,6 +170,10 @@ struct Profile {
   // Of the gripper's number as it came: above is open (closed, where inverted). None: kept, mapped
   // to -1 .. +1.
   std::optional<double> action_threshold;
+  // Under `ee_delta_interpolated`: an opening becomes how far to go, one switch held for so many
+  // steps.
+  StickyRule action_sticky = StickyRule::kNone;
+  int action_sticky_steps = 15;
   Statistics action_statistics;
   // A larger change in one control step is refused: something else than m and rad came.
   double action_limit_m = 1;

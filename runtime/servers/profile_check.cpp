@@ -74,6 +74,7 @@ std::size_t size_of(StateLayout layout) {
   switch (layout) {
     case StateLayout::kXyzWxyzOpenness:
     case StateLayout::kXyzRpyPadOpenness:
+    case StateLayout::kXyzXyzwClosedness:
     case StateLayout::kXyzRotvecFingers:
     case StateLayout::kLibero:
       return 8;
@@ -94,8 +95,16 @@ std::size_t size_of(StateLayout layout) {
   return 0;  // depends on the robot
 }
 
-// What numbers 1 to 6 of an action mean.
+// What numbers 1 to 6 of an action mean, and the last.
 MaybeMistake check_meaning(const Profile& profile) {
+  if (profile.action_sticky != StickyRule::kNone && is_step(profile.action_gripper)) {
+    return Mistake{"`action.sticky` makes steps of openings, and `action.gripper` says that they are steps",
+                   {"action.sticky", "action.gripper"}};
+  }
+  if (profile.action_sticky != StickyRule::kNone && profile.action_threshold) {
+    return Mistake{"`action.sticky` takes openings as they are, and `action.threshold` makes two of them",
+                   {"action.sticky", "action.threshold"}};
+  }
   const bool is_scaled =
       profile.action_units == ActionUnits::kBox || profile.action_units == ActionUnits::kBall;
   const bool are_joints = names_joints(profile.action_form);

@@ -34,6 +34,7 @@ inline constexpr std::array kStateLayouts = {
     Word<StateLayout>{"xyz_rpy_openness", StateLayout::kXyzRpyOpenness},
     Word<StateLayout>{"xyz_rpy_pad_openness", StateLayout::kXyzRpyPadOpenness},
     Word<StateLayout>{"xyz_rotvec_openness", StateLayout::kXyzRotvecOpenness},
+    Word<StateLayout>{"xyz_xyzw_closedness", StateLayout::kXyzXyzwClosedness},
     Word<StateLayout>{"xyz_rotvec_fingers", StateLayout::kXyzRotvecFingers},
     Word<StateLayout>{"joints", StateLayout::kJoints},
     Word<StateLayout>{"joints_openness", StateLayout::kJointsOpenness},
@@ -82,6 +83,12 @@ inline constexpr std::array kGrippers = {
     Word<GripperRange>{"step", GripperRange::kStep},
     Word<GripperRange>{"step_inverted", GripperRange::kStepInverted},
 };
+inline constexpr std::array kStickyRules = {
+    Word<StickyRule>{"none", StickyRule::kNone},
+    Word<StickyRule>{"last", StickyRule::kLast},
+    Word<StickyRule>{"switch", StickyRule::kSwitch},
+    Word<StickyRule>{"half", StickyRule::kHalf},
+};
 inline constexpr std::array kCases = {
     Word<PromptCase>{"as_is", PromptCase::kAsIs},
     Word<PromptCase>{"lower", PromptCase::kLower},
@@ -119,6 +126,7 @@ constexpr std::span<const Word<RotationForm>> words_of(RotationForm) { return kR
 constexpr std::span<const Word<ActionForm>> words_of(ActionForm) { return kActionForms; }
 constexpr std::span<const Word<ActionUnits>> words_of(ActionUnits) { return kActionUnits; }
 constexpr std::span<const Word<GripperRange>> words_of(GripperRange) { return kGrippers; }
+constexpr std::span<const Word<StickyRule>> words_of(StickyRule) { return kStickyRules; }
 constexpr std::span<const Word<PromptCase>> words_of(PromptCase) { return kCases; }
 constexpr std::span<const Word<FullStop>> words_of(FullStop) { return kFullStops; }
 constexpr std::span<const Word<Ensemble>> words_of(Ensemble) { return kEnsembles; }

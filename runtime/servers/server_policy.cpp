@@ -99,6 +99,7 @@ Status ServerPolicy::begin(const policy::EpisodeStart& start) {
   PROBE_TRY(is_open_ ? show_who_answers() : connect());
   arm_.reset();
   space_ = {};
+  sticky_ = StickyGripper(profile_.action_sticky, profile_.action_sticky_steps);
   if (start.robot != nullptr) {
     space_ = robot::action_space_of(*start.robot);
     PROBE_TRY(
@@ -145,6 +146,9 @@ Result<policy::Action> ServerPolicy::convert(const RawAction& said,
   auto action = to_action(profile_, said,
                           {*target_, tool.position, joints, arm_ ? &*arm_ : nullptr, &space_});
   if (!action) return named(action.failure(), server_);
+  if (profile_.action_sticky != StickyRule::kNone) {
+    action->gripper() = sticky_.step((action->gripper() + 1) / 2);
+  }
   return action;
 }
 
@@ -280,6 +284,8 @@ Status ServerPolicy::check_identity() {
 Result<Request> ServerPolicy::next_request(const policy::Observation& observation) {
   if (!in_episode_) return Failure{Fault::kPolicy, "the connection was lost in this episode", ""};
   PROBE_ASSIGN(Request request, to_request(profile_, observation));
+  // Another instruction is a full reset of the policies that have such a rule.
+  if (instruction_ != observation.prompt) sticky_.reset();
   instruction_ = observation.prompt;
   if (!delivery_) delivery_ = delivery_of(request);
   return request;

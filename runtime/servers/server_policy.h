@@ -82,6 +82,7 @@ class ServerPolicy : public policy::Policy, public policy::Answerer {
   std::shared_ptr<Identity> identity_;
   ChunkQueue queue_;
   std::string instruction_;  // of the last question
+  StickyGripper sticky_{StickyRule::kNone, 1};
   std::optional<policy::Delivery> delivery_;
   std::optional<robot::Chain> arm_;  // of the episode's robot, where actions name its joints
   robot::ActionSpace space_;         // of the episode's robot

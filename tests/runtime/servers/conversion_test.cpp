@@ -1,6 +1,8 @@
 // Conventions of servers against the simulator's.
 #include "runtime/servers/conversion.h"
 
+#include "runtime/servers/meaning.h"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
