@@ -390,12 +390,12 @@ class Comparison {
 
  private:
   const Scene& scene(const Task& task) const { return model_.scenes[task.scene]; }
-  // A drawer of the cabinet that stands in place of the baseline's is that drawer.
+  // A drawer of the cabinet that stands in the very place of the baseline's is that drawer.
   bool is_same(ObjectId here, ObjectId there) const {
-    return here == standing_for(model_, scene(task_), there);
+    return here == same_as(model_, scene(task_), there);
   }
   std::vector<ObjectId> seen_from(const Task& task, std::vector<ObjectId> things) const {
-    for (ObjectId& thing : things) thing = standing_for(model_, scene(task), thing);
+    for (ObjectId& thing : things) thing = same_as(model_, scene(task), thing);
     return things;
   }
 
@@ -431,7 +431,7 @@ class Comparison {
 bool other_moves(const Model& model, const Task& task, const Task& baseline, RoleId role) {
   if (role == RoleId::kSource || role == RoleId::kTarget) return false;
   std::vector<ObjectId> there = baseline.objects_in(role);
-  for (ObjectId& thing : there) thing = standing_for(model, model.scenes[task.scene], thing);
+  for (ObjectId& thing : there) thing = same_as(model, model.scenes[task.scene], thing);
   return task.objects_in(role) != there;
 }
 

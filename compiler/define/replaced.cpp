@@ -69,6 +69,14 @@ ObjectId standing_for(const Model& model, const Scene& scene, ObjectId thing) {
   return found == ObjectId::kNone ? thing : found;
 }
 
+ObjectId same_as(const Model& model, const Scene& scene, ObjectId thing) {
+  const ObjectId found = standing_for(model, scene, thing);
+  if (found == thing) return thing;
+  const Fixture& here = model.fixtures[model.objects[thing].of->fixture];
+  const Fixture& there = model.fixtures[model.objects[found].of->fixture];
+  return here.position == there.position && here.turn == there.turn ? found : thing;
+}
+
 void follow_fixtures(const Model& model, Task& task) {
   if (task.scene == SceneId::kNone) return;
   const Scene& scene = model.scenes[task.scene];

@@ -16,6 +16,10 @@ FixtureId standing_for(const Model& model, const Scene& scene, FixtureId id);
 // The same of a part or a region, by its own name; an object is itself.
 ObjectId standing_for(const Model& model, const Scene& scene, ObjectId thing);
 
+// The same where the copy stands at the very place of the first; one that stands elsewhere is another
+// thing, and `thing` is itself.
+ObjectId same_as(const Model& model, const Scene& scene, ObjectId thing);
+
 // Roles, distractors, starts of joints and the solution of a task, as its scene has their fixtures.
 // What no fixture of the scene stands for is left as it is, to be reported where it is looked for.
 void follow_fixtures(const Model& model, Task& task);
