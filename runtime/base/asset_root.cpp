@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "runtime/base/own_folder.h"
+#include "runtime/base/shell_word.h"
 
 namespace probe {
 
@@ -135,7 +136,7 @@ std::string AssetRoot::advice(std::string_view path) const {
   };
   std::string named, place;
   for (const Folder& folder : folders_) {
-    if (folder.kind != Kind::kBeside) named += " --assets " + folder.path;
+    if (folder.kind != Kind::kBeside) named += " --assets " + shell_word(folder.path);
   }
   const auto is_there = [&](const fs::path& folder) {
     std::error_code error;
@@ -150,11 +151,11 @@ std::string AssetRoot::advice(std::string_view path) const {
       place = other;
     }
   }
-  if (!place.empty()) return "it is in `" + place + "`: `--assets " + place + named + "`";
+  if (!place.empty()) return "it is in `" + place + "`: `--assets " + shell_word(place) + named + "`";
   for (const fs::path& own : own_places("assets")) {
     if (!is_there(own) || is_known(own.string())) continue;
     return "it is in `" + own.string() + "`: `" + (named.empty() ? "" : named.substr(1) + " ") +
-           "--assets " + own.string() + "`";
+           "--assets " + shell_word(own.string()) + "`";
   }
   return {};
 }

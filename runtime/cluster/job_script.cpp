@@ -85,6 +85,7 @@ start_server() {
 }
 )sh";
 
+// With kAsk or kAskApart in the place of @ask.
 constexpr const char* kWithServer = R"sh(
 # Exit code 2 is the outside, such as a server that died: what is stored stays, the rest is tried
 # again with a new server.
@@ -92,8 +93,8 @@ status=2
 for attempt in 1 2 3; do
   find_port "$attempt"
   if start_server; then
-    "${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" \
-      @flag "${policy//\{port\}/$port}"
+    asked=${policy//\{port\}/$port}
+    @ask
     status=$?
     [ "$status" -ne 2 ] && break
   fi
@@ -102,23 +103,12 @@ done
 exit "$status"
 )sh";
 
-constexpr const char* kWithServerApart = R"sh(
-# A shard that fails does not end the others. Exit code 2 is the outside, such as a server that died:
-# what is stored stays, the rest is tried again with a new server.
-status=2
-for attempt in 1 2 3; do
-  find_port "$attempt"
-  if start_server; then
-    asked=${policy//\{port\}/$port}
+constexpr const char* kAsk =
+    R"sh("${run[@]}" -o "$out/shards/$shard-of-$shards" --shard "$shard/$shards" @flag "$asked")sh";
+
+constexpr const char* kAskApart = R"sh(# A shard that fails does not end the others.
     srun --het-group=1 --cpus-per-task="$worlds" --kill-on-bad-exit=0 --wait=0 --output=/dev/null \
-      bash "$out/slurm/job.sh" shard "${asked//\{host\}/$(hostname)}"
-    status=$?
-    [ "$status" -ne 2 ] && break
-  fi
-  stop_server
-done
-exit "$status"
-)sh";
+      bash "$out/slurm/job.sh" shard "${asked//\{host\}/$(hostname)}")sh";
 
 bool has_line_break(std::string_view text) {
   return text.find_first_of("\n\r") != std::string_view::npos;
@@ -225,11 +215,14 @@ Result<std::string> to_text(const JobScript& script) {
           " --name " + shell_word(script.name) + " --jobs " + std::to_string(script.worlds);
   for (const std::string& word : script.run_arguments) text += " " + shell_word(word);
   text += ")\n";
-  std::string body = script.server_apart ? std::string(kTask) + kServer + kWithServerApart
-                     : has_server        ? std::string(kLog) + kServer + kWithServer
-                                         : std::string(kLog) + kWorldsOnly;
-  constexpr std::string_view kFlag = "@flag";
-  body.replace(body.find(kFlag), kFlag.size(), script.actor_flag);
+  std::string body = std::string(script.server_apart ? kTask : kLog) +
+                     (has_server ? std::string(kServer) + kWithServer : kWorldsOnly);
+  const auto fill = [&](std::string_view place, std::string_view with) {
+    const auto at = body.find(place);
+    if (at != body.npos) body.replace(at, place.size(), with);
+  };
+  fill("@ask", script.server_apart ? kAskApart : kAsk);
+  fill("@flag", script.actor_flag);
   text += body;
   return text;
 }

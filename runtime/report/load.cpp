@@ -100,7 +100,7 @@ class FolderLoader {
     for (const std::string& dir : dirs) {
       if (ask::holds_answers(dir)) continue;
       const auto here = store::count_rows(dir);
-      if (here) rows += *here;
+      if (here) rows += counts_[dir] = *here;
     }
     keeps_all_ = rows <= options_.most_rows;
     return {};
@@ -184,7 +184,7 @@ class FolderLoader {
     const PlanTasks& map = plans_.map(plan);
     run::Delivery delivery(file);
     std::vector<Episode> episodes;
-    if (const auto rows = store::count_rows(dir)) episodes.reserve(*rows);
+    episodes.reserve(counts_[dir]);
     std::vector<char> has_task(benchmark_.tasks.size(), 0);
     std::map<int, std::array<int, 2>> kept;  // failures and successes, by task
     std::size_t unknown = 0;
@@ -344,6 +344,7 @@ class FolderLoader {
 
   const LoadOptions& options_;
   bool keeps_all_ = true;
+  std::map<std::string, std::size_t> counts_;  // of rows, by folder
   Benchmark benchmark_;
   JoinedPlans plans_{benchmark_};
   std::map<std::string, int> reasons_, remarks_;

@@ -159,19 +159,28 @@ Json episodes_json(const Benchmark& benchmark, const PageOptions& options, Json&
     strings.push_back(from(options.relative_to, e.video));
     return static_cast<int>(strings.size()) - 1;
   });
-  Json remarks = Json::object();
-  for (std::size_t i = 0; i < episodes.size(); ++i) {
-    if (episodes[i].remark == kAbsent) continue;
-    remarks[std::to_string(i)] = strings.size();
-    strings.push_back(printable(benchmark.remarks[static_cast<std::size_t>(episodes[i].remark)],
-                                kLongestRemark));
+  // Many episodes have few remarks, each once among the strings.
+  std::vector<int> remark_texts;
+  for (const std::string& remark : benchmark.remarks) {
+    remark_texts.push_back(static_cast<int>(strings.size()));
+    strings.push_back(printable(remark, kLongestRemark));
   }
-  Json told = Json::object();
+  const auto remark_of = [&](const Episode& e) {
+    return e.remark == kAbsent ? kAbsent : remark_texts[static_cast<std::size_t>(e.remark)];
+  };
+  // An object's keys are looked for one by one; these come once each.
+  const auto put = [](Json& object, std::size_t episode, Json value) {
+    object.items().emplace_back(std::to_string(episode), std::move(value));
+  };
+  Json remarks = Json::object(), told = Json::object();
   for (std::size_t i = 0; i < episodes.size(); ++i) {
-    if (episodes[i].row == kAbsent) continue;
-    const auto& at = benchmark.rows[static_cast<std::size_t>(episodes[i].row)].told_at;
-    if (at) told[std::to_string(i)] = *at;
+    const Episode& e = episodes[i];
+    if (e.remark != kAbsent && !packs) put(remarks, i, remark_of(e));
+    if (e.row == kAbsent) continue;
+    const auto& at = benchmark.rows[static_cast<std::size_t>(e.row)].told_at;
+    if (at) put(told, i, *at);
   }
+  if (packs && !remark_texts.empty()) columns["remark"] = column(remark_of);
   // The page asks for none of them.
   if (!packs) {
     Json hashes = Json::array();

@@ -198,6 +198,9 @@ Statement::Kind Statement::kind(int column) const {
 }
 
 std::size_t Statement::bytes(int column) const {
+  // Of a number SQLite would write the text to count it.
+  const int type = sqlite3_column_type(statement_, column);
+  if (type == SQLITE_INTEGER || type == SQLITE_FLOAT) return sizeof(std::int64_t);
   return static_cast<std::size_t>(sqlite3_column_bytes(statement_, column));
 }
 

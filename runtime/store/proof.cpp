@@ -139,7 +139,7 @@ class Prover {
       : plan_(plan), run_(run), visit_(visit), book_(dir, plan, book) {}
 
   Status add(ResultRow&& row) {
-    constexpr std::size_t kAtOnce = 4096;
+    constexpr std::size_t kAtOnce = 512;  // more do not stay in a core's cache
     rows_.push_back({std::move(row), {}, {}, {}, false});
     return rows_.size() < kAtOnce ? Status() : hand_on();
   }

@@ -48,28 +48,34 @@ std::optional<ProofKey> ProofKeys::of(const ResultRow& row) {
   const std::time_t now = std::time(nullptr);
   if (file.st_ctim.tv_sec + kCoarse >= now || file.st_mtim.tv_sec + kCoarse >= now)
     return std::nullopt;
-  ByteWriter text;
+  text_.clear();
+  const auto number = [&](auto value) {
+    text_.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto words = [&](const std::string& value) {
+    number(value.size());
+    text_ += value;
+  };
   for (const std::string* value :
        {&row.task, &row.policy, &row.prompt_sha256, &row.image_sha256, &row.frames_sha256,
         &row.trace_sha256, &row.episode_id, &row.start_id, &row.trace, &row.live})
-    text.text(*value);
-  for (const int value : {row.episode, row.seed, row.steps})
-    text.u32(static_cast<std::uint32_t>(value));
+    words(*value);
+  for (const int value : {row.episode, row.seed, row.steps}) number(value);
   for (const auto* value :
        {&row.invalid, &row.sent_prompt_sha256, &row.sent_image_sha256, &row.remark}) {
-    text.u8(*value ? 1 : 0);
-    text.text(value->value_or(""));
+    number(value->has_value());
+    if (*value) words(**value);
   }
   for (const MetricValue& metric : row.metrics) {
-    text.text(metric.name);
-    text.u8(metric.is_bool ? 1 : 0);
-    text.f64(metric.value);
+    words(metric.name);
+    number(metric.is_bool);
+    number(metric.value);
   }
   for (const auto value : {static_cast<std::int64_t>(file.st_ino), std::int64_t{file.st_size},
                            std::int64_t{file.st_mtim.tv_sec}, std::int64_t{file.st_mtim.tv_nsec},
                            std::int64_t{file.st_ctim.tv_sec}, std::int64_t{file.st_ctim.tv_nsec}})
-    text.u64(static_cast<std::uint64_t>(value));
-  const Sha256 hash = sha256(std::span(text.bytes()));
+    number(value);
+  const Sha256 hash = sha256(std::string_view(text_));
   ProofKey key;
   std::memcpy(key.bytes.data(), hash.bytes.data(), key.bytes.size());
   return key;

@@ -36,7 +36,7 @@ class ProofKeys {
   std::optional<ProofKey> of(const ResultRow& row);
 
  private:
-  std::string folder_;
+  std::string folder_, text_;
   int file_ = -1;
 };
 

@@ -1,5 +1,7 @@
 #include "runtime/store/remarks_table.h"
 
+#include <utility>
+
 namespace probe::store {
 
 Status RemarksTable::put(const EpisodeKey& key, const std::optional<std::string>& remark) {
@@ -20,15 +22,24 @@ Status RemarksTable::put(const EpisodeKey& key, const std::optional<std::string>
   return write.done();
 }
 
-Result<std::map<EpisodeKey, std::string>> RemarksTable::all() {
-  std::map<EpisodeKey, std::string> remarks;
+Status RemarksTable::add_to(std::span<ResultRow> rows) {
+  if (rows.empty()) return {};
   PROBE_ASSIGN(const bool has_table, is_there());
-  if (!has_table) return remarks;
-  Statement select(database_, "select task, episode, seed, remark from remarks");
-  while (select.next())
-    remarks[{select.text(0), select.number(1), select.number(2)}] = select.text(3);
-  PROBE_TRY(select.done());
-  return remarks;
+  if (!has_table) return {};
+  Statement select(database_,
+                   "select episode, seed, remark from remarks where task = ? and (episode, seed) >= (?, ?) "
+                   "and (episode, seed) <= (?, ?) order by episode, seed");
+  const ResultRow &first = rows.front(), &last = rows.back();
+  select.bind(first.task).bind(first.episode).bind(first.seed).bind(last.episode).bind(last.seed);
+  // Both ascend.
+  std::size_t at = 0;
+  while (select.next()) {
+    const std::pair key(select.number(0), select.number(1));
+    while (at < rows.size() && std::pair(rows[at].episode, rows[at].seed) < key) ++at;
+    if (at == rows.size()) break;
+    if (std::pair(rows[at].episode, rows[at].seed) == key) rows[at].remark = select.text(2);
+  }
+  return select.done();
 }
 
 Result<bool> RemarksTable::is_there() {

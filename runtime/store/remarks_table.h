@@ -2,13 +2,14 @@
 // of folders that need it, so that older programs read the others.
 #pragma once
 
-#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "runtime/store/database.h"
 #include "runtime/store/episode_key.h"
+#include "runtime/store/results.h"
 
 namespace probe::store {
 
@@ -20,7 +21,8 @@ class RemarksTable {
 
   // In the place of what was said of the episode before; makes the table where it is needed.
   Status put(const EpisodeKey& key, const std::optional<std::string>& remark);
-  Result<std::map<EpisodeKey, std::string>> all();
+  // Gives each of these rows of one task, ascending by episode and seed, what was said of it.
+  Status add_to(std::span<ResultRow> rows);
 
  private:
   Result<bool> is_there();

@@ -91,7 +91,7 @@ std::string raised_schema() {
 }
 
 // Who reads rows keeps writers waiting no longer than so many take.
-constexpr std::size_t kRowsAtOnce = 4096;
+constexpr std::size_t kRowsAtOnce = 512;
 
 // All columns of a task's rows behind an episode and seed, by EpisodeColumn; null where the file's version has none. Their
 // order is the table's own: nothing is sorted.
@@ -220,8 +220,7 @@ class RowReader {
   static Result<RowReader> open(Database& database, const std::string& dir) {
     PROBE_ASSIGN(auto record, load_record(database));
     if (!record) return failed("no run here: results.sqlite is empty", dir);
-    PROBE_ASSIGN(auto remarks, RemarksTable(database).all());
-    return RowReader(database, dir, std::move(*record), std::move(remarks));
+    return RowReader(database, dir, std::move(*record));
   }
 
   // Those of `task` behind an episode and seed, as many as are read at once.
@@ -241,18 +240,17 @@ class RowReader {
       rows.push_back(row_of(select));
     }
     PROBE_TRY(select.done());
+    PROBE_TRY(RemarksTable(database_).add_to(rows));
     return rows;
   }
 
  private:
-  RowReader(Database& database, const std::string& dir, RunRecord record,
-            std::map<EpisodeKey, std::string> remarks)
+  RowReader(Database& database, const std::string& dir, RunRecord record)
       : database_(database),
         dir_(dir),
         base_(absolute_path(dir) + "/"),
         select_(select_episodes(record.schema)),
-        record_(std::move(record)),
-        remarks_(std::move(remarks)) {}
+        record_(std::move(record)) {}
 
   ResultRow row_of(const Statement& select) {
     ResultRow row;
@@ -283,17 +281,12 @@ class RowReader {
     row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
     row.live = record_.identity.live;
     row.only_success = record_.identity.only_success;
-    if (!remarks_.empty()) {
-      if (const auto said = remarks_.find(key_of(row)); said != remarks_.end())
-        row.remark = said->second;
-    }
     return row;
   }
 
   Database& database_;
   std::string dir_, base_, select_;
   RunRecord record_;
-  std::map<EpisodeKey, std::string> remarks_;
   MetricTexts metric_texts_;
   std::size_t bytes_ = 0, count_ = 0;
 };

@@ -76,7 +76,8 @@ void add_ask_options(Verb verb, AskArguments& arguments, SharedWords words) {
 std::string more_ask_options(SharedWords words) {
   if (words == SharedWords::kAsk)
     return "more, in runtime/ask/README.md: " + unsaid_options(words) + "\n";
-  return "more, as `ask` has them: --questions --arms --frames " + unsaid_options(words) + "\n";
+  return "more, as `ask` has them: --questions --arms --frames " + unsaid_options(words) +
+         "; as `slurm`: --server-sbatch\n";
 }
 
 }  // namespace probe::cli

@@ -1,8 +1,12 @@
 // vlaprobe k8s
 #include "runtime/cluster/kubernetes.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <set>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
@@ -23,12 +27,34 @@ Status write(const std::string& path, const std::string& text) {
   return write_file(path, std::as_bytes(std::span(text)));
 }
 
+// "`objects/mug` and 2 more lie in `my/models`": what the program has not itself.
+std::string models_of_here(const plan::Plan& plan, const AssetRoot& assets) {
+  const auto found = find_asset_root();
+  const std::vector<std::string> own = found ? found->folders() : std::vector<std::string>();
+  std::set<std::string> models;
+  std::string folder;
+  for (const plan::AssetRecord& asset : plan.assets()) {
+    const std::string path(plan.text(asset.path));
+    const std::string& holder = assets.holder(path);
+    if (std::ranges::find(own, holder) != own.end()) continue;
+    if (folder.empty()) folder = holder;
+    if (holder == folder) models.insert(path.substr(0, path.find('/', path.find('/') + 1)));
+  }
+  if (models.empty()) return "its models lie in " + assets.text();
+  const std::size_t more = models.size() - 1;
+  return "`" + *models.begin() + "`" + (more > 0 ? " and " + std::to_string(more) + " more lie" : " lies") +
+         " in `" + folder + "`";
+}
+
 Status write_manifests(KubernetesArguments& arguments, const run::RunOptions& options,
                        const plan::Plan& plan) {
   cluster::KubernetesJob& job = arguments.job;
   if (!options.assets.empty()) {
-    return Failure{Fault::kUsage, "models of this machine, which the image has not: it has its own assets",
-                   options.assets.text().empty() ? options.assets.folders().front() : "--assets"};
+    return Failure{Fault::kUsage,
+                   models_of_here(plan, options.assets) +
+                       " on this machine, and the image has its own assets alone; `vlaprobe slurm` and "
+                       "`run` take the folders of this machine",
+                   arguments.run.file};
   }
   // Every shard would refuse what one does.
   if (auto actor = run::choose_actor(options); !actor) return actor.failure();

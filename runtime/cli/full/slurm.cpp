@@ -88,7 +88,8 @@ int slurm_ask_verb(const SlurmAskArguments& arguments) {
   return tell(ask::ask_on_slurm(*loaded.plan, *options, *array), *array, "answers", options->out);
 }
 
-void add_array_options(Verb verb, ArrayArguments& arguments) {
+// Where its help has no room for the words of --server-sbatch, they are empty.
+void add_array_options(Verb verb, ArrayArguments& arguments, const char* server_sbatch) {
   verb.add_option("--array", arguments.array, "N tasks, each with one shard").between(1, 100000);
   verb.add_option("--nodes", arguments.nodes, "N tasks, each with one shard and a node of its own")
       .between(1, 100000);
@@ -101,6 +102,7 @@ void add_array_options(Verb verb, ArrayArguments& arguments) {
                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--program", arguments.script.program, "path of vlaprobe on the nodes");
   verb.add_flag("--submit", arguments.submit, "submit it, wait and merge");
+  verb.add_option("--server-sbatch", arguments.script.server_sbatch, server_sbatch);
 }
 
 }  // namespace
@@ -113,9 +115,9 @@ void add_slurm(Verb app, int& exit) {
       "example: vlaprobe slurm suite/intact.probe --array 8 --jobs 8 -o runs/pi0 --submit \\\n"
       "           --policy 'openpi://127.0.0.1:{port}' --server-command 'serve --port {port}'");
   add_run_options(verb, arguments->run);
-  add_array_options(verb, *arguments);
-  verb.add_option("--server-sbatch", arguments->script.server_sbatch,
-                  "one server for all, on a node of its own, {host} in P: an option of sbatch for it");
+  add_array_options(
+      verb, *arguments,
+      "one server for all, on a node of its own, {host} in P: an option of sbatch for it");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_verb(*arguments); });
 }
@@ -130,7 +132,7 @@ void add_slurm_ask(Verb app, int& exit) {
       "           --model 'openai://127.0.0.1:{port}?model=qwen' --server-command 'vllm serve qwen "
       "--port {port}'");
   add_ask_options(verb, arguments->ask, SharedWords::kSlurmAsk);
-  add_array_options(verb, *arguments);
+  add_array_options(verb, *arguments, "");
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_ask_verb(*arguments); });
 }

@@ -2,25 +2,18 @@
 
 #include <optional>
 
-#include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/export/dataset/format_checks.h"
 #include "runtime/export/dataset/lerobot.h"
 #include "runtime/export/dataset/rlds.h"
 #include "runtime/export/dataset/robomimic.h"
-#include "runtime/store/run_plan.h"
 
 namespace probe::dataset {
 
 Result<CheckReport> check_dataset(const std::string& dir, const CheckOptions& options) {
   PROBE_ASSIGN(NamedRuns named, NamedRuns::open(dir, options.runs));
   std::optional<PicturesAgain> again;
-  if (options.redraws) {
-    PROBE_ASSIGN(const AssetRoot root, options.runs.empty()
-                                           ? find_asset_root(options.assets)
-                                           : store::find_run_assets(options.runs.front(), options.assets));
-    again.emplace(named.shape(), root);
-  }
+  if (options.redraws) again.emplace(named.shape(), options.assets);
   PicturesAgain* const drawn = again ? &*again : nullptr;
   if (is_file(dir + "/" + lerobot::kInfoPath)) return check_lerobot(dir, std::move(named), drawn);
   if (is_file(dir + "/" + robomimic::kFile)) return check_robomimic(dir, std::move(named), drawn);

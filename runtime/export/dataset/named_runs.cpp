@@ -100,7 +100,7 @@ Result<NamedRuns> NamedRuns::open(const std::string& dir, const std::vector<std:
     }
     if (to_hex(plan->root()) != named.at("plan_root").text())
       return Failure{Fault::kUsage, "is a run of another plan than the dataset's", place};
-    Run run{std::move(*plan), {}};
+    Run run{place, std::move(*plan), {}};
     PROBE_ASSIGN(auto rows, store::read_results(place));
     for (store::ResultRow& row : rows) run.rows.emplace(store::key_of(row), std::move(row));
     out.runs_.emplace(name, std::move(run));
@@ -143,7 +143,7 @@ Result<std::optional<NamedDemonstration>> NamedRuns::next() {
                    store::to_text(key)};
   const plan::SceneRecord& scene = plan.scenes()[plan.tasks()[*plan.find_task(key.task)].scene];
   return std::optional(NamedDemonstration{
-      store::to_text(key), &plan, row->second.trace_sha256, std::move(trace),
+      store::to_text(key), run->second.dir, &plan, row->second.trace_sha256, std::move(trace),
       json.at("wordings").get<std::vector<std::string>>(), is_success(row->second),
       Pose{to_vec(scene.base_position), to_quat(scene.base_rotation)},
       shape_.cameras == cameras_of(plan, plan.tasks()[*plan.find_task(key.task)])});

@@ -20,6 +20,7 @@ namespace probe::dataset {
 // A line of demonstrations.jsonl with what it stands for.
 struct NamedDemonstration {
   std::string name;                  // for messages
+  std::string dir;                   // of its run, as it is now
   const plan::Plan* plan = nullptr;  // its run's; lives as long as the NamedRuns
   std::string trace_sha256;
   store::Trace trace;
@@ -42,6 +43,7 @@ class NamedRuns {
 
  private:
   struct Run {
+    std::string dir;
     plan::Plan plan;
     std::map<store::EpisodeKey, store::ResultRow> rows;
   };

@@ -1,6 +1,7 @@
 #include "runtime/export/dataset/pictures_again.h"
 
 #include "runtime/export/dataset/pictures.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::dataset {
 
@@ -9,7 +10,8 @@ Status PicturesAgain::draw(const NamedDemonstration& named, const See& see) {
   if (plan_ != named.plan || task_ != task) {
     repeater_.reset();
     const std::uint32_t tasks[] = {*named.plan->find_task(task)};
-    PROBE_ASSIGN(auto assets, stage::SharedAssets::load(*named.plan, assets_, tasks));
+    PROBE_ASSIGN(const AssetRoot root, store::find_run_assets(named.dir, assets_));
+    PROBE_ASSIGN(auto assets, stage::SharedAssets::load(*named.plan, root, tasks));
     repeater_.emplace(*named.plan, std::move(assets));
     plan_ = named.plan;
     task_ = task;

@@ -18,6 +18,7 @@ namespace probe::dataset {
 
 class PicturesAgain {
  public:
+  // `assets` as find_run_assets() takes them: of none, each run's own.
   PicturesAgain(const Shape& shape, AssetRoot assets)
       : shape_(shape), assets_(std::move(assets)) {}
 

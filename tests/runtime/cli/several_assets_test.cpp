@@ -152,6 +152,43 @@ TEST_CASE("who names a folder of one model, or none, is told the words that name
   const Outcome alone = box.vlaprobe("check mine.probe --assets my_models");
   CHECK(alone.exit == 1);
   CHECK_MESSAGE(contains(alone.err, "`--assets my_models --assets "), alone.err);
+  // As a shell takes them.
+  fs::rename(box / "my_models", box / "my models");
+  const Outcome spaced = box.vlaprobe("check mine.probe", "VLAPROBE_ASSETS=$ASSETS");
+  CHECK_MESSAGE(contains(spaced.err, "it is in `my models`: `--assets 'my models' --assets "), spaced.err);
+  fs::rename(box / "my models", box / "my_models");
   // The folders of an environment stand as in PATH.
   CHECK(box.vlaprobe("check mine.probe", "VLAPROBE_ASSETS=my_models:$ASSETS").exit == 0);
+}
+
+TEST_CASE("a cluster's image has no models of this machine, and which they are is said") {
+  Sandbox box;
+  pack(box, "near");
+  write_file(box / "near/mine.probe", kText);
+  const Outcome refused =
+      box.vlaprobe("k8s near/mine.probe --array 2 --policy null --image i --claim c -o out");
+  CHECK(refused.exit == 1);
+  CHECK_MESSAGE(contains(refused.err, "near/mine.probe: `objects/my_block` lies in `near` on this machine"),
+                refused.err);
+}
+
+TEST_CASE("a dataset of several runs is checked with the models of each") {
+  Sandbox box;
+  for (const std::string name : {"red", "blue"}) {
+    pack(box, name);
+    fs::rename(box / (name + "/objects/my_block"), box / (name + "/objects/" + name));
+    std::string text = kText;
+    for (auto at = text.find("my_block"); at != text.npos; at = text.find("my_block")) text.replace(at, 8, name);
+    write_file(box / (name + "/mine.probe"), text);
+    const Outcome ran =
+        box.vlaprobe("run " + name + "/mine.probe --policy null --episodes 0-0 -o ran_" + name);
+    REQUIRE_MESSAGE(ran.exit == 0, ran.err);
+  }
+  // A picture of another size is drawn again.
+  const Outcome made =
+      box.vlaprobe("export ran_red ran_blue --format robomimic --size 32x24 -o data");
+  REQUIRE_MESSAGE(made.exit == 0, made.err);
+  const Outcome checked = box.vlaprobe("export --check data ran_red ran_blue");
+  CHECK_MESSAGE(checked.exit == 0, checked.err);
+  CHECK_MESSAGE(contains(checked.out, "2 demonstrations"), checked.out);
 }

@@ -21,7 +21,7 @@ export interface Task {
 export type Column = ArrayLike<number>;
 export interface Episodes {
   count: number; policy: Column; task: Column; start: Column; seed: Column; bits: Column; more_bits?: Column[]; steps: Column;
-  reason: Column; prompt: Column; video?: Column; remarks?: Record<string, number>; told?: Record<string, number[]>; numbers?: Record<string, (number | null)[]>;
+  reason: Column; prompt: Column; video?: Column; remark?: Column; remarks?: Record<string, number>; told?: Record<string, number[]>; numbers?: Record<string, (number | null)[]>;
 }
 // All that a task says, in one line.
 export function instruction(task: Task): string {
@@ -121,7 +121,7 @@ function unpacked(column: Column | Packed, count: number): Column {
 }
 
 function unpackEpisodes(e: Episodes): void {
-  for (const name of ["policy", "task", "start", "seed", "bits", "steps", "reason", "prompt", "video"] as const) if (e[name]) e[name] = unpacked(e[name]!, e.count);
+  for (const name of ["policy", "task", "start", "seed", "bits", "steps", "reason", "prompt", "video", "remark"] as const) if (e[name]) e[name] = unpacked(e[name]!, e.count);
   if (e.more_bits) e.more_bits = e.more_bits.map((column) => unpacked(column, e.count));
 }
 

@@ -170,7 +170,7 @@ export function episodeView(state: State, row: number): Child {
 
   const args = [shellWord(run?.dir ?? "DIR"), shellWord(task.name), start, seed].join(" ");
   const numbers = Object.entries(e.numbers ?? {}).flatMap(([name, values]) => (typeof values[row] === "number" ? [`${data.metrics.find((m) => m.name === name)?.label ?? name} ${Number(values[row]!.toPrecision(5))}`] : []));
-  const remark = data.strings[e.remarks?.[String(row)] ?? -1];
+  const remark = data.strings[e.remark?.[row] ?? e.remarks?.[String(row)] ?? -1];
   const why = readWhys().e?.[String(row)];
   const told = e.told?.[String(row)];
   const prompt = data.prompts[e.prompt[row] ?? -1];
