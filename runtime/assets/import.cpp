@@ -67,14 +67,15 @@ class Import {
       for (const std::string_view photo : kGooglePhotos) PROBE_TRY(add_photo(std::string(photo)));
       for (const KnownRobot& robot : kGoogleRobots) PROBE_TRY(add_robot(robot));
       for (const std::string_view name : kGoogleOwn)
-        PROBE_TRY(miss(std::string(name), "the suite's own", options_.own));
+        PROBE_TRY(miss(std::string(name), "the suite's own", own_folder(name)));
     } else {
       for (const KnownScene& scene : kKnownScenes) PROBE_TRY(add_scene(scene));
       PROBE_TRY(add_robot());
     }
-    // The rest of the models keep their names.
+    // The rest of the models keep their names, but for those that a known one has been given.
     for (const auto& [id, folder] : data_.models) {
       if (known.contains(id)) continue;
+      if (std::ranges::find(models, "objects/" + id, &KnownModel::folder) != models.end()) continue;
       const auto info = data_.infos.find(id);
       const double scale = info == data_.infos.end() ? 1 : info->second.scales.front();
       PROBE_TRY(add_model(id, "objects/" + id, scale));
@@ -321,6 +322,13 @@ class Import {
   // ---- what is not there
 
   // Says so, and takes ours if that was asked for.
+  std::string own_folder(std::string_view name) const {
+    std::error_code error;
+    for (const std::string& folder : options_.own)
+      if (fs::is_directory(fs::path(folder) / name, error)) return folder;
+    return {};
+  }
+
   Status miss(const std::string& name, const std::string& why) {
     return miss(name, why, options_.fill_from);
   }

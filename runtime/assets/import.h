@@ -20,7 +20,8 @@ struct ImportOptions {
   ImportFor suite = ImportFor::kBridge;
   // An asset folder of ours: for kGoogle the suite's own robot, cabinet, rooms and textures are
   // copied from here, which the data has nothing for. Empty: they are missing.
-  std::string own = {};
+  // The first of several that has a thing gives it.
+  std::vector<std::string> own = {};
 };
 
 enum class Verdict { kTaken, kOdd, kMissing, kFilled };

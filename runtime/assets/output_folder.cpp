@@ -63,7 +63,10 @@ Result<OutputFolder> OutputFolder::create(const std::string& path) {
   const fs::path target = fs::absolute(path).lexically_normal();
   if (fs::exists(target, error) &&
       (!fs::is_directory(target, error) || !fs::is_empty(target, error))) {
-    return Failure{Fault::kIo, "is there already; assets are written to a new folder: remove it, or name another with -o", path};
+    return Failure{
+        Fault::kIo,
+        "is there already; assets are written to a new folder: remove it, or name another with -o",
+        path};
   }
   // A name with a slash at its end has no last part.
   const fs::path named = target.has_filename() ? target : target.parent_path();

@@ -63,7 +63,9 @@ std::vector<policy::Skill> wrong_skills(const policy::Privileged& view, int role
   std::vector<policy::Skill> skills = view.solution;
   const auto first =
       std::ranges::find_if(skills, [](const policy::Skill& skill) { return skill.object >= 0; });
-  const bool has_wrong_object = first != skills.end() && view.object_of(role) >= 0;
+  // Without a solution the errand itself says what is put where.
+  const bool has_wrong_object =
+      (first != skills.end() || skills.empty()) && view.object_of(role) >= 0;
   if (!has_wrong_object && !view.wrong_fixtures.empty()) return with_wrong_parts(view);
   if (first != skills.end()) {
     const int right = first->object, wrong = view.object_of(role);

@@ -113,7 +113,7 @@ Result<FidelityRow> masks_row(Imported& imported, const Records& records) {
       Held::kNo,
       {}};
   std::vector<double> found;
-  std::size_t smaller = 0;
+  std::size_t smaller = 0, unnamed = 0;  // masks; pixels of ours where no geom is named
   for (const RecordedTask& task : records.tasks()) {
     const std::string file = "reference/" + task.key() + "_t0_geometry.npz";
     if (!records.has(file)) continue;
@@ -130,8 +130,11 @@ Result<FidelityRow> masks_row(Imported& imported, const Records& records) {
         const auto at = std::ranges::find(stage->body_names(), name) - stage->body_names().begin();
         Overlap overlap;
         for (std::size_t i = 0; i < theirs.size(); ++i) {
-          if (theirs[i].empty()) continue;
           const bool ours = frame.segmentation[i] == at + 1;
+          if (theirs[i].empty()) {
+            unnamed += ours ? 1 : 0;
+            continue;
+          }
           const bool is_theirs = theirs[i].starts_with(name + "_");
           overlap.both += ours && is_theirs ? 1 : 0;
           overlap.either += ours || is_theirs ? 1 : 0;
@@ -157,10 +160,11 @@ Result<FidelityRow> masks_row(Imported& imported, const Records& records) {
     return row;
   }
   std::ranges::sort(found);
-  row.figure =
-      fmt::format("{} of {} masks; {:.3f} in the median, least {:.3f}; {} smaller ones not counted",
-                  found.size() - row.others.size(), found.size(), found[found.size() / 2],
-                  found.front(), smaller);
+  row.figure = fmt::format(
+      "{} of {} masks; {:.3f} in the median, least {:.3f}; {} smaller ones not counted, nor {} "
+      "pixels of ours where no geom is named",
+      found.size() - row.others.size(), found.size(), found[found.size() / 2], found.front(),
+      smaller, unnamed);
   row.held = row.others.empty() ? Held::kYes : Held::kNo;
   return row;
 }

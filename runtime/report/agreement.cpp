@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
@@ -15,10 +16,20 @@
 namespace probe::report {
 namespace {
 
-constexpr std::size_t kLongest = 200;  // of a cell in messages, bytes
-constexpr std::size_t kFewest = 3;     // policies: two always lie on a line
+constexpr std::size_t kLongest = 200;         // of a cell in messages, bytes
+constexpr std::size_t kMostFigures = 10'000;  // far more than any paper; work grows with its square
+constexpr std::size_t kFewest = 3;            // policies: two always lie on a line
 
-enum Column : std::size_t { kSource, kProtocol, kMetric, kPolicy, kTask, kSubtask, kValue, kNeeded };
+enum Column : std::size_t {
+  kSource,
+  kProtocol,
+  kMetric,
+  kPolicy,
+  kTask,
+  kSubtask,
+  kValue,
+  kNeeded
+};
 constexpr std::array<std::string_view, kNeeded> kColumns = {
     "source", "protocol", "metric", "policy", "task", "subtask", "value"};
 constexpr std::array<std::string_view, 2> kTrials = {"trials_per_published_protocol", "trials"};
@@ -44,7 +55,9 @@ std::string column_of(const PublishedFigure& figure) {
   return figure.task + "_" + figure.subtask;
 }
 
-stats::MeasuredRate measured(const PublishedFigure& figure) { return {figure.value, figure.trials}; }
+stats::MeasuredRate measured(const PublishedFigure& figure) {
+  return {figure.value, figure.trials};
+}
 
 bool is_same_cell(const PublishedFigure& a, const PublishedFigure& b) {
   return a.policy == b.policy && a.task == b.task && a.subtask == b.subtask;
@@ -71,13 +84,6 @@ Json interval_json(const std::optional<stats::Interval>& interval) {
 
 }  // namespace
 
-bool is_rate_table(std::string_view csv) {
-  const std::vector<std::string> cells = csv_cells(first_line(csv));
-  return std::ranges::all_of(kColumns, [&](std::string_view column) {
-    return std::ranges::find(cells, column) != cells.end();
-  });
-}
-
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file) {
   RateTable table{file, {}, {}};
   const std::vector<std::string> header = csv_cells(first_line(csv));
@@ -85,19 +91,19 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
   for (std::size_t c = 0; c < kNeeded; ++c) {
     const auto found = std::ranges::find(header, kColumns[c]);
     if (found == header.end()) {
-      return Failure{Fault::kUsage,
-                     fmt::format("a table of rates has the columns source, protocol, metric, policy, "
-                                 "task, subtask and value, and no `{}` is here",
-                                 kColumns[c]),
-                     file + ":1"};
+      return Failure{
+          Fault::kUsage,
+          fmt::format("a table of rates has the columns source, protocol, metric, policy, "
+                      "task, subtask and value, and no `{}` is here",
+                      kColumns[c]),
+          file + ":1"};
     }
     at[c] = static_cast<std::size_t>(found - header.begin());
   }
   std::optional<std::size_t> trials;
   for (const std::string_view name : kTrials) {
     const auto found = std::ranges::find(header, name);
-    if (!trials && found != header.end())
-      trials = static_cast<std::size_t>(found - header.begin());
+    if (!trials && found != header.end()) trials = static_cast<std::size_t>(found - header.begin());
   }
   std::size_t number = 0;
   while (!csv.empty()) {
@@ -128,16 +134,24 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
                      where};
     }
     figure.value = *value;
+    constexpr std::size_t kMostDigits = 15;  // a double has no more
+    if (written.size() > kMostDigits + 5 || table.figures.size() >= kMostFigures) {
+      return Failure{Fault::kUsage,
+                     written.size() > kMostDigits + 5
+                         ? fmt::format("`{}` has more digits than a number holds",
+                                       printable(written, kLongest))
+                         : fmt::format("more than {} figures", kMostFigures),
+                     where};
+    }
     const std::size_t point = written.find('.');
-    figure.decimals =
-        point == std::string::npos ? 0 : static_cast<int>(written.size() - point - 1);
+    figure.decimals = point == std::string::npos ? 0 : static_cast<int>(written.size() - point - 1);
     figure.line = number;
     if (trials && !cells[*trials].empty()) {
       const auto count = number_of(cells[*trials]);
       if (!count || *count < 1 || *count > 1e9 || *count != std::floor(*count)) {
-        return Failure{Fault::kUsage,
-                       fmt::format("`{}` is no number of trials", printable(cells[*trials], kLongest)),
-                       where};
+        return Failure{
+            Fault::kUsage,
+            fmt::format("`{}` is no number of trials", printable(cells[*trials], kLongest)), where};
       }
       figure.trials = *count;
     }
@@ -147,7 +161,7 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
   return table;
 }
 
-void add_runs(RateTable& table, const Benchmark& benchmark) {
+std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) {
   const int success = benchmark.find_metric("success");
   std::vector<PublishedFigure> added;
   for (const PublishedFigure& real : table.figures) {
@@ -158,6 +172,7 @@ void add_runs(RateTable& table, const Benchmark& benchmark) {
       if (benchmark.policies[p].name != real.policy) continue;
       stats::Count count;
       std::vector<int> counted;
+      std::set<std::pair<int, int>> starts;  // episodes of one start are no independent trials
       for (const plan::Plan& plan : benchmark.plan_files) {
         for (const plan::SetRecord& set : plan.sets()) {
           if (plan.text(set.name) != column_of(real)) continue;
@@ -169,6 +184,7 @@ void add_runs(RateTable& table, const Benchmark& benchmark) {
               if (!episode.valid()) continue;
               count.k += episode.is(success);
               ++count.n;
+              starts.emplace(task, episode.start);
             }
           }
         }
@@ -177,12 +193,34 @@ void add_runs(RateTable& table, const Benchmark& benchmark) {
       PublishedFigure figure = real;
       figure.source = figure.protocol = kTheseRuns;
       figure.value = count.rate();
-      figure.trials = static_cast<double>(count.n);
+      figure.trials = static_cast<double>(starts.size());
       figure.line = 0;
       added.push_back(std::move(figure));
     }
   }
+  std::vector<std::string> left_out;
+  std::set<std::string> known, counted;
+  for (const PublishedFigure& figure : table.figures)
+    if (is_rate(figure) && figure.protocol == kReal) known.insert(figure.policy);
+  for (const PublishedFigure& figure : added) counted.insert(figure.policy);
+  for (const auto& policy : benchmark.policies) {
+    if (!known.contains(policy.name)) {
+      left_out.push_back(fmt::format(
+          "`{}` has no real rate in the table, which knows {}: name runs as it does, with --name",
+          policy.name, fmt::join(known, ", ")));
+    } else if (!counted.contains(policy.name)) {
+      left_out.push_back(
+          fmt::format("`{}` has no valid episode in a set that is called as a column of the table "
+                      "is (TASK_SUBTASK)",
+                      policy.name));
+    }
+  }
+  if (!counted.empty() && counted.size() < kFewest) {
+    left_out.push_back(fmt::format("the runs have {} of the {} policies that an agreement takes",
+                                   counted.size(), kFewest));
+  }
   table.figures.insert(table.figures.end(), added.begin(), added.end());
+  return left_out;
 }
 
 std::vector<AgreementRow> agreements(const RateTable& table) {
@@ -221,19 +259,20 @@ std::vector<StatedAgreement> stated_agreements(const RateTable& table,
   for (const PublishedFigure& figure : table.figures) {
     const bool is_violation = figure.metric == "MMRV";
     if (!is_violation && figure.metric != "Pearson") continue;
-    for (const AgreementRow& row : rows) {
-      if (row.protocol != figure.protocol || row.task != figure.task ||
-          row.subtask != figure.subtask)
-        continue;
-      if (!is_violation && !row.agreement.correlation) continue;
-      const double computed =
-          is_violation ? row.agreement.violation : *row.agreement.correlation;
-      // What was written has a last digit of its own.
-      const double half = 0.5 * std::pow(10.0, -figure.decimals);
-      const bool is_close = std::abs(computed - figure.value) <= kClose + half + 1e-12;
-      all.push_back({&figure, computed, is_close});
-      break;
-    }
+    const auto fits = [&](const AgreementRow& row) {
+      return row.protocol == figure.protocol && row.task == figure.task &&
+             row.subtask == figure.subtask && (is_violation || row.agreement.correlation);
+    };
+    // Its own source's rates, else the first.
+    auto row = std::ranges::find_if(
+        rows, [&](const AgreementRow& one) { return fits(one) && one.source == figure.source; });
+    if (row == rows.end()) row = std::ranges::find_if(rows, fits);
+    if (row == rows.end()) continue;
+    const double computed = is_violation ? row->agreement.violation : *row->agreement.correlation;
+    // What was written has a last digit of its own.
+    const double half = 0.5 * std::pow(10.0, -figure.decimals);
+    const bool is_close = std::abs(computed - figure.value) <= kClose + half + 1e-12;
+    all.push_back({&figure, computed, is_close});
   }
   return all;
 }
@@ -248,11 +287,11 @@ std::vector<std::string> impossible_rates(const RateTable& table) {
     const auto rate = [&](std::int64_t k) {
       return decimal_text(static_cast<double>(k) / figure.trials, figure.decimals + 1);
     };
-    sentences.push_back(fmt::format(
-        "{}:{}: {}, {}, {}: {} is no count of {} trials; nearest: {} ({}) and {} ({})", table.file,
-        figure.line, figure.policy, figure.protocol, column_of(figure),
-        decimal_text(figure.value, figure.decimals), n, near.below, rate(near.below), near.above,
-        rate(near.above)));
+    sentences.push_back(
+        fmt::format("{}:{}: {}, {}, {}: {} is no count of {} trials; nearest: {} ({}) and {} ({})",
+                    table.file, figure.line, figure.policy, figure.protocol, column_of(figure),
+                    decimal_text(figure.value, figure.decimals), n, near.below, rate(near.below),
+                    near.above, rate(near.above)));
   }
   return sentences;
 }
@@ -265,21 +304,21 @@ std::string agreement_text(const RateTable& table) {
   for (const AgreementRow& row : rows) {
     if (source == nullptr || *source != row.source || *protocol != row.protocol) {
       source = &row.source, protocol = &row.protocol;
-      text += fmt::format("{}{}{}\n{:<34} {:>8}  {:>6}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n",
-                          text.empty() ? "" : "\n", row.source,
-                          row.source == row.protocol ? "" : ", " + row.protocol, "", "policies",
-                          "MMRV", "95 % by trials", "without one", "Pearson", "95 % by trials",
-                          "without one");
+      text +=
+          fmt::format("{}{}{}\n{:<34} {:>8}  {:>6}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n",
+                      text.empty() ? "" : "\n", row.source,
+                      row.source == row.protocol ? "" : ", " + row.protocol, "", "policies", "MMRV",
+                      "95 % by trials", "without one", "Pearson", "95 % by trials", "without one");
     }
     const stats::Agreement& a = row.agreement;
     const std::string column =
         row.subtask == "average" || row.subtask.empty() ? row.task : row.task + "_" + row.subtask;
-    text += fmt::format(
-        "{:<34} {:>8}  {:>6.3f}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n", column,
-        row.policies.size(), a.violation, interval_text(a.violation_by_trials),
-        interval_text(a.violation_by_policies),
-        a.correlation ? fmt::format("{:.3f}", *a.correlation) : "-",
-        interval_text(a.correlation_by_trials), interval_text(a.correlation_by_policies));
+    text += fmt::format("{:<34} {:>8}  {:>6.3f}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n", column,
+                        row.policies.size(), a.violation, interval_text(a.violation_by_trials),
+                        interval_text(a.violation_by_policies),
+                        a.correlation ? fmt::format("{:.3f}", *a.correlation) : "-",
+                        interval_text(a.correlation_by_trials),
+                        interval_text(a.correlation_by_policies));
   }
   if (rows.empty())
     text += "no three policies have a real rate and a simulated one of the same task\n";
@@ -296,8 +335,8 @@ std::string agreement_text(const RateTable& table) {
                         counts.second, kClose);
   for (const StatedAgreement& one : stated) {
     if (one.is_close) continue;
-    text += fmt::format("{}:{}: {} of {}, {}: {} is written ({}), the rates give {:.3f}\n", table.file,
-                        one.stated->line, one.stated->metric, column_of(*one.stated),
+    text += fmt::format("{}:{}: {} of {}, {}: {} is written ({}), the rates give {:.3f}\n",
+                        table.file, one.stated->line, one.stated->metric, column_of(*one.stated),
                         one.stated->protocol, decimal_text(one.stated->value, one.stated->decimals),
                         one.stated->source, one.computed);
   }

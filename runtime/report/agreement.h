@@ -19,8 +19,8 @@ namespace probe::report {
 struct PublishedFigure {
   std::string source, protocol, metric, policy, task, subtask;
   double value = 0;
-  int decimals = 0;    // digits behind the point
-  double trials = 0;   // of which it is the rate; 0: not said
+  int decimals = 0;   // digits behind the point
+  double trials = 0;  // of which it is the rate; 0: not said
   std::size_t line = 0;
 };
 
@@ -30,12 +30,10 @@ struct RateTable {
   std::vector<std::string> unread;       // rows whose value is no number, such as a range
 };
 
-// Whether a CSV begins as a table of one figure a row does: with source, protocol, metric, policy,
-// task, subtask and value, in any order.
-bool is_rate_table(std::string_view csv);
-// `trials_per_published_protocol` (or `trials`) is read where it is there, other columns are passed
-// over. Fails (kUsage, where = file:line) on a missing column, a row of another length and a
-// success_rate that is not from 0 to 1.
+// A CSV of one figure a row, with the columns source, protocol, metric, policy, task, subtask and
+// value in any order. `trials_per_published_protocol` (or `trials`) is read where it is there,
+// other columns are passed over. Fails (kUsage, where = file:line) on a missing column, a row of
+// another length and a success_rate that is not from 0 to 1.
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file);
 
 // The protocol of real rates, and what runs that are added are called.
@@ -43,8 +41,9 @@ inline constexpr std::string_view kReal = "real", kTheseRuns = "these runs";
 
 // Appends the runs' rates of success, of tasks in sets that are called as columns are: task and
 // subtask joined by `_`, the task alone for the subtask `average`. Only of policies that the table
-// has real rates of, by name.
-void add_runs(RateTable& table, const Benchmark& benchmark);
+// has real rates of, by name; trials are starts, as episodes of one are not independent. What of
+// the runs was left out, a sentence each.
+std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark);
 
 // One column of one protocol of one source, against the real rates of the same policies: those of
 // that source, else the first in the file.
@@ -60,7 +59,7 @@ std::vector<AgreementRow> agreements(const RateTable& table);
 struct StatedAgreement {
   const PublishedFigure* stated = nullptr;
   double computed = 0;
-  bool is_close = false;  // within kClose
+  bool is_close = false;  // within kClose and half of its last digit
 };
 inline constexpr double kClose = 0.003;  // what rounding rates to three digits moves
 std::vector<StatedAgreement> stated_agreements(const RateTable& table,

@@ -244,6 +244,12 @@ Check judge_gripper(const Profile& profile, const std::vector<RawAction>& action
     check.found += ", which looks like 0 .. 1; the profile says -1 .. 1, where 0 is half open";
     check.fix = {"action.gripper = unit" + ending, "action.threshold = 0.5"};
   }
+  // Who holds a switch has no threshold.
+  if (profile.action_sticky != StickyRule::kNone) {
+    std::erase_if(check.fix, [](const std::string& line) {
+      return line.starts_with("action.threshold");
+    });
+  }
   return check;
 }
 

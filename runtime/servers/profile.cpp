@@ -30,8 +30,8 @@ struct Number {
 using Slot = std::variant<std::string*, Count, Number, std::optional<double>*, std::vector<double>*,
                           std::vector<ImageRule>*, std::vector<StateRule>*, ActionForm*,
                           ActionUnits*, Protocol*, StateLayout*, StateFrame*, NumberType*,
-                          Normalisation*, RotationForm*, GripperRange*, StickyRule*, PromptCase*, FullStop*,
-                          Ensemble*, ConnectionUse*, CheckpointUse*, WorldsAtOnce*>;
+                          Normalisation*, RotationForm*, GripperRange*, StickyRule*, PromptCase*,
+                          FullStop*, Ensemble*, ConnectionUse*, CheckpointUse*, WorldsAtOnce*>;
 
 struct Field {
   std::string_view name;

@@ -131,7 +131,7 @@ Result<Trace> prove(const plan::Plan& plan, const ResultRow& row) {
 
 namespace {
 
-// Rows some thousand at a time: proven side by side, then handed on in their order.
+// Some hundred rows at a time: proven side by side, then handed on in their order.
 class Prover {
  public:
   Prover(const std::string& dir, const plan::Plan& plan, ProvenRun& run, const RowVisitor& visit,

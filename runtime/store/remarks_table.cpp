@@ -26,9 +26,10 @@ Status RemarksTable::add_to(std::span<ResultRow> rows) {
   if (rows.empty()) return {};
   PROBE_ASSIGN(const bool has_table, is_there());
   if (!has_table) return {};
-  Statement select(database_,
-                   "select episode, seed, remark from remarks where task = ? and (episode, seed) >= (?, ?) "
-                   "and (episode, seed) <= (?, ?) order by episode, seed");
+  Statement select(
+      database_,
+      "select episode, seed, remark from remarks where task = ? and (episode, seed) >= (?, ?) "
+      "and (episode, seed) <= (?, ?) order by episode, seed");
   const ResultRow &first = rows.front(), &last = rows.back();
   select.bind(first.task).bind(first.episode).bind(first.seed).bind(last.episode).bind(last.seed);
   // Both ascend.

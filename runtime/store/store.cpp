@@ -214,7 +214,7 @@ Result<std::vector<std::string>> tasks_in_order(Database& database) {
   return names;
 }
 
-// Rows of a folder's database, some thousand at a time.
+// Rows of a folder's database, some hundred at a time.
 class RowReader {
  public:
   static Result<RowReader> open(Database& database, const std::string& dir) {

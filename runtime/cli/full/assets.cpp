@@ -34,7 +34,7 @@ int import_verb(AssetsArguments& arguments) {
     auto own = find_asset_root();
     if (!own) return report(own.failure());
     if (arguments.fill) arguments.options.fill_from = own->folders().front();
-    if (is_google) arguments.options.own = own->folders().front();
+    if (is_google) arguments.options.own = own->folders();
   }
   auto imported = assets::import_data(arguments.options);
   if (!imported) return report(imported.failure());

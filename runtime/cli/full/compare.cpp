@@ -29,7 +29,7 @@ int compare_rates(const CompareArguments& arguments) {
     const auto benchmark = report::load(arguments.dirs, {.prove = true});
     if (!benchmark) return report(benchmark.failure());
     say_notes(benchmark->notes);
-    report::add_runs(*table, *benchmark);
+    for (const std::string& left_out : report::add_runs(*table, *benchmark)) say("{}\n", left_out);
   }
   if (arguments.json) {
     put("{}\n", report::agreement_json(*table).dump(1));

@@ -1,7 +1,8 @@
 # Magma for scenes of suite/google: MagmaInference(model_name, "google_robot") of Magma's tools/simplerenv-magma, behind examples/serve_simpler.py.
 #   openpi://HOST:PORT?profile=magma_fractal
-# SimplerEnv's class does the rest, before it answers: pictures, statistics, rotation, the gripper's rule. Its gripper closes at +1 and
-# says how far to go; each answer holds one action, and a new connection is a new episode there.
+# Magma's class does the rest, before it answers: pictures, statistics, rotation, the gripper's rule. Its gripper closes at +1 and says
+# how far to go; each answer holds one action. Its `reset` forgets the words alone: have the wrapper forget what it keeps of the gripper,
+# too, or results depend on the order of episodes.
 protocol = openpi
 about = Magma on the Google robot behind examples/serve_simpler.py
 image = first -> observation/image

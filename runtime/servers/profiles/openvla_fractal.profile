@@ -1,6 +1,7 @@
 # openvla/openvla-7b on the Google robot (RT-1's data, fractal20220817_data), for scenes of suite/google, as SimplerEnv's fork for
 # OpenVLA evaluates it (DelinQu/SimplerEnv-OpenVLA, also simpler_env/policies/openvla of SimplerEnv):
 #   openvla://HOST:PORT?profile=openvla_fractal
+# but for the words, which that class sends bare and this server puts into its own sentence.
 # Pictures are made 224 x 224 by area; roll, pitch and yaw are turned into a rotation; a switch of the gripper is held for 15 steps.
 protocol = openvla
 about = OpenVLA 7B on the Google robot behind its REST server

@@ -220,7 +220,8 @@ TEST_CASE("scenes with every statement") {
   CHECK(parsed.messages() == "");
   const auto& body = parsed.get<SceneDecl>().body;
   REQUIRE(body.size() == 9);
-  CHECK(as<SceneRobotStmt>(body[0]).at.coordinates.size() == 3);
+  REQUIRE(as<SceneRobotStmt>(body[0]).at.has_value());
+  CHECK(as<SceneRobotStmt>(body[0]).at->coordinates.size() == 3);
   CHECK(as<JointsStmt>(body[1]).positions.coordinates[0].unit == Unit::kRadian);
   CHECK(as<BackdropStmt>(body[4]).mesh.value == "room");
   REQUIRE(as<SceneCameraStmt>(body[5]).cameras.size() == 1);

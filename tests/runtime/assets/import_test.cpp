@@ -125,6 +125,9 @@ void make_google_data(const std::string& root) {
   const std::string models = root + "/data/custom/models/";
   write_text(models + "opened_coke_can/textured.dae", dae_box("Z_UP"));
   write_text(models + "opened_coke_can/collision.obj", obj_box());
+  // The release has closed cans, too, which are not the suite's.
+  write_text(models + "coke_can/textured.dae", dae_box("Z_UP"));
+  write_text(models + "coke_can/collision.obj", obj_box());
   write_text(models + "opened_redbull_can/collision.obj", obj_box());
   fs::create_directories(root + "/data/real_inpainting");
   const auto photo = [&](const char* name, int width, int height) {
@@ -189,7 +192,7 @@ TEST_CASE("tasks whose thing has no mesh in an imported folder are named, with t
   TemporaryFolder folder;
   make_google_data(folder / "repo");
   REQUIRE(import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle,
-                       VLAPROBE_SOURCE_DIR "/assets"})
+                       {VLAPROBE_SOURCE_DIR "/assets"}})
               .ok());
   const std::string file = VLAPROBE_SOURCE_DIR "/suite/google.probe";
   CompileOptions options;

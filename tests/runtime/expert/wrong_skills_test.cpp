@@ -78,6 +78,8 @@ TEST_CASE("a wrong object goes before a wrong part") {
   view.solution = {put_in(0)};
   CHECK(wrong_skills(view, 2)[0].object == 2);
   CHECK(wrong_skills(view, 2)[0].to_fixture == 0);
+  view.solution = {};
+  CHECK(wrong_skills(view, 2).empty());
 }
 
 }  // namespace

@@ -38,7 +38,6 @@ std::string refused(const std::string& csv) {
 
 TEST_CASE("a table of rates gives its violations, what it states beside them, and what no count gives") {
   const RateTable table = parsed(kSmall);
-  CHECK(is_rate_table(kSmall));
   CHECK(table.unread == std::vector<std::string>{"t.csv:10: `0.5/0.6` is no number"});
   const auto rows = agreements(table);
   REQUIRE(rows.size() == 1);
