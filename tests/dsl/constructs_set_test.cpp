@@ -133,7 +133,7 @@ TEST_CASE("suite, suite_st: tasks, prefix, seeds and training set as the plan ha
   CHECK(analyze_with_suite(
             "suite s trained on lab { tasks { v }; seeds 1 }\nvariant v of red_on_tray { source "
             "untagged }\nobject untagged { mesh \"block\"; box 1cm x 1cm x 1cm; density "
-            "500kg/m3; friction 1; name \"thing\" }")
+            "500kg/m3; friction 1; name \"thing\"; rest roll 0deg yaw 0deg, roll 0deg yaw 90deg }")
             ->codes() == "P0705");
 }
 

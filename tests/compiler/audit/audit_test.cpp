@@ -230,9 +230,11 @@ TEST_CASE("the repaired suite has nothing irregular") {
   CHECK(clean.audit.comparisons == 48);
   CHECK(audit::to_text(clean.audit) ==
         audit::to_text(clean.audit.robots.front()) +
-            "\nlooked at: all words of 52 of 52 tasks are held to success; success of 52 of 52 tasks was "
+            "\nlooked at: all words of 52 of 52 tasks are held to success; success of 52 of 52 "
+            "tasks was "
             "put to the test in made-up worlds\n12 of 1248 starts repeat another start of the same "
-            "task, to the last bit\nsuite `intact_clean`, 52 tasks, 48 comparisons: nothing irregular\n");
+            "task, to the last bit\nsuite `intact_clean`, 52 tasks, 48 comparisons: nothing "
+            "irregular\n");
 }
 
 TEST_CASE("of each robot it says how it is driven, grips, where things are and what is varied") {
@@ -348,13 +350,15 @@ TEST_CASE("each of several things that are put somewhere is tried on the table a
         "layout two_and_a_plate { cells back = grid 1 x 2 at (-20cm, 0cm) spread (0cm, 9cm)\n"
         "  place source, helper in distinct back; place target at (-6cm, 0cm)\n"
         "  orient by rest; drop 50cm settle 0.5s }\n"
-        "metrics two { success = at end " + success + " }\n"
+        "metrics two { success = at end " +
+        success +
+        " }\n"
         "task t like carrot_on_plate { helper green_cube; layout two_and_a_plate; metrics two\n"
-        "  horizon 120 steps; say \"" + words + "\" }\nsuite own { tasks { t }; seeds 1 }\n");
+        "  horizon 120 steps; say \"" +
+        words + "\" }\nsuite own { tasks { t }; seeds 1 }\n");
   };
   const std::string both = "put both {the source} and {the helper} on {the target}";
-  const Audited loose =
-      with("(resting_on(source, target) and resting_on(helper, target))", both);
+  const Audited loose = with("(resting_on(source, target) and resting_on(helper, target))", both);
   const audit::Finding* held = loose.find(Kind::kHeld, "t");
   REQUIRE(held != nullptr);
   CHECK(held->message.find("one of the things that are put somewhere") != std::string::npos);
@@ -484,8 +488,8 @@ TEST_CASE("words that nothing is held to are listed with the reason, and counted
   const Audited own = audit_text(R"(
 variant kind of carrot_on_plate { say "gently put {the source} on {the target}" }
 variant odd of carrot_on_plate { say "put {the source} kind of on {the target}" }
-variant covers of carrot_on_plate { say "cover {the source} with {the target}" }
-variant touched of carrot_on_plate { say "push {the source}" }
+variant covers of carrot_on_plate { say "warm {the source} with {the target}" }
+variant touched of carrot_on_plate { say "warm {the source}" }
 variant plain of carrot_on_plate { say "lay {the source} on {the target}" }
 suite own trained on bridge_v2 { tasks { kind, odd, covers, touched, plain }; seeds 42 }
 )");
@@ -499,9 +503,10 @@ suite own trained on bridge_v2 { tasks { kind, odd, covers, touched, plain }; se
   };
   CHECK(why("plain") == "");
   CHECK(why("kind") == "gently: how it is done is measured by nothing");
-  CHECK(why("odd") == "put the carrot: `kind` is not understood | kind of on the plate: not understood");
-  CHECK(why("covers") == "cover the carrot with the plate: not understood");
-  CHECK(why("touched") == "push the carrot: what it asks for is not known");
+  CHECK(why("odd") ==
+        "put the carrot: `kind` is not understood | kind of on the plate: not understood");
+  CHECK(why("covers") == "warm the carrot with the plate: not understood");
+  CHECK(why("touched") == "warm the carrot: not understood");
   CHECK(own.audit.held == 1);
   CHECK(own.audit.heard == 5);
   CHECK(to_text(own.audit).find("looked at: all words of 1 of 5 tasks are held to success") !=
@@ -514,7 +519,8 @@ suite own trained on bridge_v2 { tasks { kind, odd, covers, touched, plain }; se
   CHECK(published().audit.held + 3 >= published().audit.heard);
 }
 
-TEST_CASE("a rule that a thing in the air passes, and one that counts a touch that was, are found") {
+TEST_CASE(
+    "a rule that a thing in the air passes, and one that counts a touch that was, are found") {
   const Audited own = audit_text(R"(
 predicate risen(o: object) = height(o) - height(start(o)) > 2cm
 metrics raised { success = at end risen(source) }
@@ -533,7 +539,9 @@ suite own trained on bridge_v2 { tasks { lifted, held, met }; seeds 0 }
   CHECK(own.find(Kind::kTouchedOnce, "held") == nullptr);
 }
 
-TEST_CASE("the Google robot's suite: what is irregular in the release is found, and mended in the other") {
+TEST_CASE(
+    "the Google robot's suite: what is irregular in the release is found, and mended in the "
+    "other") {
   const Audited google = audit_file(VLAPROBE_SOURCE_DIR "/suite/google.probe");
   CHECK(google.find(Kind::kInTheAir, "pick_standing") != nullptr);
   CHECK(google.find(Kind::kTouchedOnce, "place_apple") != nullptr);

@@ -46,6 +46,6 @@ TEST_CASE("a layout lets objects come to rest, metrics say what success is") {
   CHECK(codes("metrics m { moved = at end moved_xy(source) > 1cm }\n" + judged) == "P0206");
   CHECK(codes("metrics m { success = max moved_xy(source) }\n" + judged) == "P0601");
   CHECK(codes("metrics m { moved = at end moved_xy(source) > 1cm }\n"
-              "task t like red_on_tray { metrics m; set success = once moved_xy(source) > 1cm }") ==
-        "");
+              "task t like red_on_tray { say \"push {the source}\"; metrics m; set success = once "
+              "moved_xy(source) > 1cm }") == "");
 }

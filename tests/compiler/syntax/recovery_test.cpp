@@ -49,7 +49,7 @@ TEST_CASE("a list that a derive goes over has a word before it and parentheses r
         "1:46 P0101 found `day`, expected `(`\n");
   CHECK(Parsed("derive \"{t}_{l}\" for t in { a }, l in (day, night) { light l }").messages() ==
         "1:39 P0101 a list of names has a word before it that says of what: `lights (..)`, `cameras`, "
-        "`scenes`, `objects` or `parts`; tasks stand in braces\n");
+        "`scenes`, `robots`, `fixtures`, `objects` or `parts`; tasks stand in braces\n");
   // A set may have such a name.
   CHECK(Parsed("derive \"{t}_x\" for t in lights { light l }").messages() == "");
   CHECK(Parsed("derive \"{t}_x\" for t in lights where axis light { light l }").messages() == "");

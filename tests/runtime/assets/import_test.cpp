@@ -160,7 +160,8 @@ TEST_CASE("for the Google robot's suite: what is there under its names, what is 
   const auto report =
       import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle});
   REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
-  CHECK(says(line_of(*report, "objects/coke_can"), "opened_coke_can at 0.5: "));
+  CHECK_MESSAGE(says(line_of(*report, "objects/coke_can"), "opened_coke_can at 0.5: "),
+                line_of(*report, "objects/coke_can"));
   CHECK(says(line_of(*report, "objects/slim_can"),
              "missing opened_redbull_can has no textured.glb"));
   CHECK(says(line_of(*report, "objects/water_bottle"), "missing no model `blue_plastic_bottle`"));
