@@ -18,7 +18,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   if (reporter.is_stopped()) return;
   if (!reporter.depth.is_immediate) check_buried(model, checked.asset_root, reporter);
   check_repeated(model, reporter);
-  check_wide(model, reporter);
+  if (!reporter.depth.is_immediate) check_wide(model, checked.asset_root, reporter);
   check_horizons(model, reporter);
   check_metrics(model, reporter);
   if (!reporter.depth.is_immediate) check_begun(model, checked.asset_root, reporter);

@@ -50,7 +50,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root,
                   Reporter& reporter);                       // P0501, P0502, P0505, P1302, P1511
 void check_buried(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0507
 void check_repeated(const Model& model, Reporter& reporter);  // P1512
-void check_wide(const Model& model, Reporter& reporter);      // P1514
+void check_wide(const Model& model, const AssetRoot& asset_root, Reporter&);   // P1514
 void check_horizons(const Model& model, Reporter& reporter);  // P1513
 void check_metrics(const Model& model, Reporter& reporter);  // P0206, P0304, P0601, P0604, P0605
 void check_begun(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0607

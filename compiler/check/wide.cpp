@@ -1,16 +1,17 @@
-// P1514: a source that is wider than the hand opens, whichever way it is taken. A box is what is
-// known here, so what has a rim, a wall or a handle may be held all the same; a box that is thin
-// along one side is held by that.
+// P1514: a source that is wider than the hand opens, whichever way it is taken. What is felt of it
+// must be one convex part: what has several may have a rim, a wall or a handle to be held by.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "compiler/check/check.h"
 #include "compiler/check/starts.h"
 #include "runtime/robot/hands.h"
+#include "runtime/scene/collision_mesh.h"
 
 namespace probe::sema {
 namespace {
@@ -43,9 +44,17 @@ bool is_taken(const Task& task) {
   return task.solution.empty() || std::ranges::any_of(task.solution, takes);
 }
 
+bool is_convex(const Object& object, const AssetRoot& asset_root) {
+  const auto shape = scene::load_collision_mesh(
+      asset_root.file("objects/" + object.mesh.text + "/collision.obj"),
+      Vec3::Constant(object.scale));
+  return shape.ok() && shape->parts.size() == 1;
+}
+
 }  // namespace
 
-void check_wide(const Model& model, Reporter& reporter) {
+void check_wide(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
+  std::map<ObjectId, bool> convex;  // reads each mesh once
   constexpr double kClosedGap = 0.02;  // m: closed fingers may stay that far apart
   for (const Task& task : model.tasks) {
     if (!task.complete || task.abstract || task.source == ObjectId::kNone ||
@@ -58,6 +67,9 @@ void check_wide(const Model& model, Reporter& reporter) {
     if (!opening || !object.has_box) continue;
     const double width = narrowest(object);
     if (width <= opening->width + (opening->is_measured ? 0 : kClosedGap)) continue;
+    const auto [known, is_new] = convex.try_emplace(task.source, false);
+    if (is_new) known->second = is_convex(object, asset_root);
+    if (!known->second) continue;
     const About about(reporter, task.decl_span);
     const double fits = std::floor(opening->width / width * object.scale * 20) / 20;
     Diagnostic& said = reporter.report(
@@ -67,7 +79,7 @@ void check_wide(const Model& model, Reporter& reporter) {
                     opening->is_measured ? "open to" : "move apart by",
                     centimetres(opening->width)));
     said.label(object.box_span, "its box");
-    said.help("it can be held by a rim, a wall or a handle alone" +
+    said.help("it can be pushed alone" +
               (fits > 0 ? fmt::format("; `scale {:g}` would fit between the fingers", fits)
                         : std::string()));
     said.cause = cause_of(object.span, {object.name, model.robots[id].name});

@@ -138,7 +138,7 @@ const statements = {
   },
   part: described,
   scene: {
-    robot: ($) => choice(seq($.identifier, optional(stand($))), stand($)),
+    robot: ($) => choice(seq(nameOr($, 'at'), optional(stand($))), stand($)),
     joints: ($) => $.point,
     surface: ($) => seq($.quantity, 'area', range($, $.point)),
     texture: ($) => seq($.identifier, $.string, optional(alias($._number, $.quantity))),

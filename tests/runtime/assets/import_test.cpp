@@ -123,8 +123,8 @@ TEST_CASE("what is missing is taken from elsewhere only when that was asked for,
 // another shape, the robot and a colouring whose texture is not there.
 void make_google_data(const std::string& root) {
   const std::string models = root + "/data/custom/models/";
-  write_text(models + "opened_coke_can/textured.dae", dae_box("Z_UP"));
-  write_text(models + "opened_coke_can/collision.obj", obj_box());
+  write_text(models + "opened_coke_can/textured.dae", dae_box("Z_UP", 2));  // it is halved
+  write_text(models + "opened_coke_can/collision.stl", binary_stl_box());
   // The release has closed cans, too, which are not the suite's.
   write_text(models + "coke_can/textured.dae", dae_box("Z_UP"));
   write_text(models + "coke_can/collision.obj", obj_box());
