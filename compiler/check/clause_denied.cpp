@@ -52,12 +52,11 @@ Lack left_lack(const ClauseFacts& facts, const Clauses::Left& left) {
   }
   if (!left.is_spared || left.of.size() != 1) return std::nullopt;
   const ObjectId thing = *left.of.begin();
-  const std::string words = fold_case(left.words);
-  const auto begins = [&](std::string_view text) { return words.starts_with(text); };
+  const auto begins = [&](std::string_view text) { return said.starts_with(text); };
   if (facts.goal.raised.contains(thing) &&
       (begins("without lifting ") || begins("without raising ") || begins("without picking ")))
     return "success wants " + facts.name(thing) + " to be higher than it began";
-  const bool is_left = begins("leave ") && (has_words(words, "alone") || has_words(words, "where"));
+  const bool is_left = begins("leave ") && (has_words(said, "alone") || has_words(said, "where"));
   if (facts.goal.shifted.contains(thing) &&
       (is_left || begins("without moving ") || begins("not move ")))
     return "success wants " + facts.name(thing) + " to be elsewhere than it began";

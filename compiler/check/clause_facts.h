@@ -24,6 +24,7 @@ struct ClauseFacts {
   const Task& task;
   const Clauses& clauses;
   const Goal& goal;
+  bool is_alone = true;  // the only sentence: none before it has done or said something
 
   std::string name(ObjectId id) const { return "`" + model.objects[id].name + "`"; }
   const std::optional<OfFixture>& of(ObjectId id) const { return model.objects[id].of; }

@@ -7,18 +7,19 @@
 
 namespace probe::sema {
 std::optional<std::string> clause_lack(const Model& model, const Task& task, const Clauses& clauses,
-                                       const Goal& goal) {
+                                       const Goal& goal, bool is_alone) {
   // What has no success is told elsewhere.
   if (std::none_of(task.judged.begin(), task.judged.end(),
                    [](const Metric& metric) { return metric.name == "success"; }))
     return std::nullopt;
-  const ClauseFacts facts{model, task, clauses, goal};
+  const ClauseFacts facts{model, task, clauses, goal, is_alone};
   for (const Clause& clause : facts.clauses.all) {
     if (!clause.certain) continue;
     std::optional<std::string> why;
     if (clause.denied) {
       if (why = denied_lack(facts, clause); why)
-        return "says \"not " + clause.words + "\" and " + *why;
+        return std::string("says \"") + (clause.is_none ? "" : "not ") + clause.words + "\" and " +
+               *why;
       continue;
     }
     if (clause.does == Does::kPuts && clause.goes) why = put_lack(facts, clause);

@@ -65,7 +65,7 @@ std::optional<ClauseNouns::Noun> ClauseNouns::noun(std::size_t at) {
   }
   const Match word = match(at);
   if (word.is == WordIs::kIt) {
-    found.what.push_back({out_.said, 0, true});
+    found.what.push_back({out_.said, 0, true, false, words_[at].text == "everything"});
     found.end = at + word.length;
     return found;
   }

@@ -41,7 +41,7 @@ bool has_part_in_it(const ClauseFacts& facts, ObjectId id) {
   return is_asked || facts.goal.ways.contains(id) || facts.goal.asks_of_all;
 }
 
-bool is_each_asked(const ClauseFacts& facts, const Things& things) {
+bool is_each_asked_first(const ClauseFacts& facts, const Things& things) {
   return std::all_of(things.begin(), things.end(), [&](ObjectId thing) {
     return std::any_of(facts.goal.asked.begin(), facts.goal.asked.end(),
                        [&](const Goal::Asked& asked) {
@@ -58,7 +58,7 @@ Lack either_lack(const ClauseFacts& facts, const Clause& clause) {
   };
   const auto says_each = [&](const Things& things) {
     return things.size() > 1 && std::all_of(things.begin(), things.end(), says) &&
-           !is_each_asked(facts, things);
+           !is_each_asked_first(facts, things);
   };
   for (const Things& two : facts.goal.either) {
     if (says_each(two)) return content_with_either(two);
@@ -71,7 +71,7 @@ Lack either_lack(const ClauseFacts& facts, const Clause& clause) {
     });
   };
   for (const Things& some : facts.goal.one_of) {
-    if (says_each(some) || (says_them(some) && !is_each_asked(facts, some)))
+    if (says_each(some) || (says_them(some) && !is_each_asked_first(facts, some)))
       return content_with_any(some);
   }
   return std::nullopt;
@@ -114,12 +114,21 @@ Lack of_several(const ClauseFacts& facts, const Clause::What& what, const Things
   return std::nullopt;
 }
 
+// Whether success is about no other thing that a clause may have in mind: a "coke" is a can, too.
+bool are_all(const ClauseFacts& facts, const Clause& clause, const Things& things) {
+  return !facts.goal.speaks_of_all && !facts.goal.asks_of_all &&
+         std::none_of(facts.goal.spoken.begin(), facts.goal.spoken.end(), [&](ObjectId id) {
+           return facts.task.is_object(id) && !things.contains(id) && !clause.where.contains(id);
+         });
+}
+
 }  // namespace
 
 Lack count_lack(const ClauseFacts& facts, const Clause& clause) {
   for (const Clause::What& what : clause.what) {
     if (what.count == 0) continue;
-    if (what.is_several && !what.is_back && !what.is_some && what.of.size() < what.count)
+    if (what.is_several && !what.is_back && !what.is_some && what.of.size() < what.count &&
+        are_all(facts, clause, what.of))
       return std::to_string(what.of.size()) +
              (what.of.size() == 1 ? " thing is called so" : " things are called so");
     // The last one declared speaks of the others.

@@ -54,12 +54,15 @@ Lack taken_lack(const ClauseFacts& facts, const Clause& clause) {
 }
 
 Lack begun_lack(const ClauseFacts& facts, const Clause& clause) {
-  if (!clause.begins_there || clause.from.size() != 1 || clause.what.size() != 1 ||
-      facts.task.starts.empty())
+  if (!facts.is_alone || !clause.begins_there || clause.from.size() != 1 ||
+      clause.what.size() != 1 || facts.task.starts.empty())
     return std::nullopt;
   const auto moved = handled(clause, clause.what[0]);
   const ObjectId place = *clause.from.begin();
   if (moved.size() != 1 || !facts.task.is_object(moved[0]) || facts.lies_on(moved[0], place))
+    return std::nullopt;
+  // A table of starts does not say what lies in what.
+  if (!facts.task.is_object(place) && !facts.model.layouts[facts.task.layout].given.empty())
     return std::nullopt;
   // What an earlier clause put there, or may have.
   for (const Clause* earlier = facts.clauses.all.data(); earlier != &clause; ++earlier) {
@@ -93,17 +96,18 @@ Lack raised_lack(const ClauseFacts& facts, const Clause& clause) {
   const bool is_put_down = clause.does == Does::kPuts && facts.goal.forgets &&
                            (has_words(words, "down") || !clause.ground.empty());
   constexpr auto kLow = std::to_array<std::string_view>(
-      {"touch", "push", "pull", "slide", "turn", "rotate", "press", "squeeze"});
-  const bool is_low =
-      facts.clauses.all.size() == 1 && std::any_of(kLow.begin(), kLow.end(), [&](const auto verb) {
-        return words.starts_with(std::string(verb) + " ");
-      });
+      {"touch", "push", "slide", "turn", "rotate", "press", "squeeze"});
+  const bool is_low = facts.clauses.all.size() == 1 && facts.is_alone && clause.from.empty() &&
+                      !has_words(words, "up") && !has_words(words, "out") &&
+                      std::any_of(kLow.begin(), kLow.end(), [&](const auto verb) {
+                        return words.starts_with(std::string(verb) + " ");
+                      });
   if (!is_put_down && !is_low) return std::nullopt;
   return "success wants " + facts.name(moved[0]) + " to be higher than it began";
 }
 
 Lack place_left_out(const ClauseFacts& facts) {
-  if (!facts.clauses.is_whole || facts.clauses.all.empty()) return std::nullopt;
+  if (!facts.is_alone || !facts.clauses.is_whole || facts.clauses.all.empty()) return std::nullopt;
   const bool takes_alone =
       std::all_of(facts.clauses.all.begin(), facts.clauses.all.end(), [](const Clause& clause) {
         return (clause.does == Does::kTakes || clause.does == Does::kOther) && clause.certain &&

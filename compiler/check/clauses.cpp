@@ -123,7 +123,8 @@ class ClauseReader : public ClauseNouns {
   void finish(Clause clause, std::size_t from) {
     turn_ = Ordinal::kNone;
     idle(clause);
-    clause.denied = match(at_).is == WordIs::kNone;
+    clause.is_none = match(at_).is == WordIs::kNone;
+    clause.denied = clause.is_none;
     // A clause without a verb begins behind a sign.
     if (at_ == from || !ends_at(at_)) {
       if (auto what = nouns(at_, false); what && !what->is_place) {
@@ -181,21 +182,25 @@ class ClauseReader : public ClauseNouns {
     out_.all.push_back(std::move(clause));
   }
 
-  // "Put the cube, not the can, on the tray", "all cubes except the red one".
+  // "Put the cube, not the can, on the tray", "everything but the can", "all cubes except the red
+  // one".
   bool aside(Clause& clause) {
     const Match word = match(at_);
     const bool is_not = word.is == WordIs::kDenies && words_[at_].text == "not";
     if (!is_not && word.is != WordIs::kBut) return false;
-    const auto other = but_what(at_ + word.length, clause);
+    const std::string& text = words_[at_].text;
+    const bool excepts = text == "except" || (text == "but" && word.length == 1);
+    const bool is_of_all = excepts && is_everything(clause);
+    const auto other =
+        is_of_all ? nouns(at_ + word.length, false) : but_what(at_ + word.length, clause);
     if (!other || other->is_place) return false;
     Things of;
     for (const Clause::What& one : other->what) of.insert(one.of.begin(), one.of.end());
-    const std::string& text = words_[at_].text;
-    const bool excepts = text == "except" || (text == "but" && word.length == 1);
     // "Put the cup on the tray but the can on the plate" goes on.
-    if (excepts && !is_several(clause, of)) return false;
+    if (excepts && !is_of_all && !is_several(clause, of)) return false;
     const std::size_t end = other->end;
     const WordIs next = match(end).is;
+    if (is_of_all && clause.goes && is_place(next)) return false;
     const bool is_end = end == words_.size() || words_[end - 1].ends;
     if (!is_place(next) && next != WordIs::kDenies && next != WordIs::kBut &&
         (is_not || !(is_end || joins(next))))
@@ -209,6 +214,9 @@ class ClauseReader : public ClauseNouns {
     out_.left.push_back({shown(at_, end), std::move(of), true});
     at_ = end;
     return true;
+  }
+  static bool is_everything(const Clause& clause) {
+    return clause.what.size() == 1 && clause.what[0].is_back && clause.what[0].is_each;
   }
   static bool is_several(const Clause& clause, const Things& but) {
     return std::any_of(clause.what.begin(), clause.what.end(), [&](const Clause::What& one) {

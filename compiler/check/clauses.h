@@ -24,7 +24,7 @@ struct Clause {
     std::size_t count = 0;    // "both cubes", "three cubes"; 0 where nothing counts
     bool is_back = false;     // "it": something that was spoken of
     bool is_several = false;  // a noun in the plural
-    bool is_each = false;     // "all drawers", "every drawer"
+    bool is_each = false;     // "all drawers", "every drawer", "everything"
     bool is_some = false;     // "one of the drawers", "a drawer", "A or B": it is not said which
   };
   std::vector<What> what;
@@ -51,7 +51,8 @@ struct Clause {
   bool certain = true;        // all of its words were understood
   std::string stopped;        // where not: the word that was not
   bool denied = false;  // "do not put ..": the first of an instruction, and alone; "neither .. nor"
-  std::string words;    // "put the red block on the tray"
+  bool is_none = false;  // "put neither .. nor ..": its own words deny it
+  std::string words;     // "put the red block on the tray"
 };
 
 // "the red block first", "the red block last", beside clauses or of one.

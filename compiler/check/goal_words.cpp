@@ -100,10 +100,11 @@ bool says_other_clause(const Model& model, const Task& task, Told& told, Shared&
   Shared::ClauseKey key = shared.clause_key(task);
   if (shared.has_right_clauses(key)) return false;
   says_other_value(model, task, told, mistaken, reporter);
-  const auto lack = clause_lack(model, task, told.clauses(), told.goal());
+  const auto lack = clause_lack(model, task, told.clauses(), told.goal(), is_whole);
   if (!lack) {
     if (is_whole && moves_unsaid(model, task, told, reporter)) return true;
-    if (told.clauses().is_pure) shared.keep_right_clauses(std::move(key));
+    // Of a later sentence less is asked.
+    if (is_whole && told.clauses().is_pure) shared.keep_right_clauses(std::move(key));
     return false;
   }
   report_of(reporter, Code::P1202, task, task.say_span, "`" + task.name + "` " + *lack)

@@ -15,6 +15,19 @@ namespace {
 // Whether the words could speak of a thing in a way that is not its name: by a noun of a phrase, by
 // a value of an attribute, or of several at once.
 bool may_speak_of(const Model& model, const Said& said, const Clauses& clauses, ObjectId thing) {
+  // Which things "everything" and "these" are is not said by words.
+  constexpr auto kAny = std::to_array<std::string_view>({"everything", "this", "these", "those"});
+  const bool is_open = std::any_of(said.words.begin(), said.words.end(), [&](const auto& word) {
+    return std::find(kAny.begin(), kAny.end(), word.text) != kAny.end();
+  });
+  if (is_open) return true;
+  // "Both cans" where one is called so: another is one, too.
+  const bool counts_more =
+      std::any_of(clauses.all.begin(), clauses.all.end(), [](const Clause& clause) {
+        return std::any_of(clause.what.begin(), clause.what.end(),
+                           [](const Clause::What& what) { return what.count > what.of.size(); });
+      });
+  if (counts_more) return true;
   // Of words that are all understood it is known.
   if (clauses.is_whole && !clauses.all.empty()) return clauses.said.contains(thing);
   constexpr auto kSeveral = std::to_array<std::string_view>(
@@ -39,6 +52,13 @@ bool may_speak_of(const Model& model, const Said& said, const Clauses& clauses, 
            std::any_of(nouns.begin(), nouns.end(),
                        [&](const std::string& noun) { return is_same_noun(word.text, noun); });
   });
+}
+
+// "Move it", "push them away", "move": of whatever is there.
+bool is_of_any(const Clause& clause) {
+  return clause.what.empty() ||
+         std::any_of(clause.what.begin(), clause.what.end(),
+                     [](const Clause::What& what) { return what.of.empty(); });
 }
 
 }  // namespace
@@ -73,6 +93,8 @@ bool AskedTwice::look(ExprRef ref, std::set<PredicateId>& called) const {
 bool moves_unsaid(const Model& model, const Task& task, Told& told, Reporter& reporter) {
   if (told.goal().shifted.empty() || !told.clauses().is_whole || told.clauses().all.empty())
     return false;
+  const auto& clauses = told.clauses().all;
+  if (std::any_of(clauses.begin(), clauses.end(), is_of_any)) return false;
   for (const ObjectId thing : told.goal().shifted) {
     if (may_speak_of(model, told.said(), told.clauses(), thing)) continue;
     report_of(reporter, Code::P1202, task, task.say_span,

@@ -22,6 +22,26 @@ bool follows_place(Told& told, std::size_t at) {
   return false;
 }
 
+// "Not to the left", "to the right, not to the left", "the one to the left": no way that it goes.
+bool is_no_way(Told& told, std::size_t at, std::string_view other) {
+  constexpr auto kDenies = std::to_array<std::string_view>(
+      {"not", "don't", "never", "no", "neither", "nor", "without", "avoid", "instead", "rather"});
+  const auto& words = told.said().words;
+  const auto denies = [&](const Said::Word& word) {
+    return std::ranges::find(kDenies, word.text) != kDenies.end();
+  };
+  const auto before = words.begin() + static_cast<std::ptrdiff_t>(at);
+  return std::any_of(words.begin(), before, denies) ||
+         std::any_of(words.begin(), words.end(),
+                     [&](const auto& word) { return word.text == other; }) ||
+         (at > 0 && words[at - 1].text == "one") || told.tells_which(at);
+}
+
+// Whether another sentence follows, which success at the end is about.
+bool is_before_another(const Task& task) {
+  return std::ranges::count(task.judged, "success", &Metric::name) > 1;
+}
+
 // "Move the cube to the left" of which success is that it went to the right.
 std::optional<std::string> other_way(Told& told, const GoalWords& one) {
   using Went = Goal::Went;
@@ -30,6 +50,8 @@ std::optional<std::string> other_way(Told& told, const GoalWords& one) {
   const auto at = told.said().find(one.words);
   const auto& words = told.said().words;
   if (!at || (*at + 3 < words.size() && words[*at + 3].text == "of")) return std::nullopt;
+  if (is_no_way(told, *at, is_left ? "right" : "left") || is_before_another(told.task()))
+    return std::nullopt;
   const auto& went = told.goal().went;
   for (const auto& [thing, way] : went) {
     if (way != (is_left ? Went::kRight : Went::kLeft) ||

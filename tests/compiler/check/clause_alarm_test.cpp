@@ -118,3 +118,82 @@ TEST_CASE("what is lifted, pushed or moved aside is so in success") {
                     "put the cube on the tray") == "");
   CHECK(told_of_one("x(source) > 10cm", "put the cube on the tray") == "");
 }
+
+TEST_CASE("what is meant by a word alone may be any thing") {
+  for (const std::string words :
+       {"push everything away", "move it", "push them away", "move one of them",
+        "put the cube on the tray and push everything away", "push these away"}) {
+    CAPTURE(words);
+    const bool has_cube = words.starts_with("put");
+    CHECK(told_of_one(has_cube ? "(over(source, target) and displaced(towel))" : "displaced(towel)",
+                      words) == "");
+  }
+}
+
+TEST_CASE("a side that is denied, corrected or says which thing is none to go to") {
+  const std::string right = "view_x(source) > view_x(start(source)) + 5cm";
+  for (const std::string words :
+       {"move the cube to the right, not to the left",
+        "don't move it to the left, move it to the right", "do not move the cube to the left",
+        "take the cube, the one to the left, and move it to the right",
+        "take the one to the left and move it", "move the cube to the right instead of to the left",
+        "take the cube to the left and move it away"}) {
+    CAPTURE(words);
+    CHECK(told_of_one(right, words).find("farther to the right") == std::string::npos);
+  }
+}
+
+TEST_CASE("what is pulled up, out or off is higher than it began") {
+  for (const std::string words : {"pull the cube up", "pull up the cube", "pull the cube off the tray",
+                                  "pull the cube out", "slide the cube up"}) {
+    CAPTURE(words);
+    CHECK(told_of_one("lifted(source)", words, kLying) == "");
+  }
+}
+
+TEST_CASE("a later sentence speaks of what an earlier one did") {
+  const auto told = [](const std::string& goal, const std::string& first, const std::string& then) {
+    return first_line_of(
+        analyze_with_suite(std::string(kPlaces) + "metrics m { success = at end " + goal +
+                           " }\nlayout one { " + kApart +
+                           "; orient by rest; drop 10cm settle 0.5s }\n"
+                           "task t like base { layout one; source cube; target tray; metrics m; "
+                           "say \"" +
+                           first + "\"; then say \"" + then +
+                           "\" when height(source) > 95cm }\n")
+            ->said());
+  };
+  CHECK(told("not over(source, target)", "put {the source} on {the target}",
+             "take {the source} off {the target}") == "");
+  CHECK(told("over(source, target)", "put {the source} on {the target}", "press {the source}") ==
+        "");
+  CHECK(told("lifted(source)", "lift {the source}", "turn {the source}") == "");
+  CHECK(told("view_x(source) > view_x(start(source)) + 5cm", "move {the source} to the left",
+             "move {the source} to the right") == "");
+}
+
+TEST_CASE("everything but one thing is not that thing") {
+  const std::string goal = "(over(helper, target) and not over(source, target))";
+  for (const std::string words :
+       {"put everything but the cube on the tray", "put everything except the cube on the tray",
+        "put everything on the tray but the cube", "put all but the cube on the tray",
+        "put everything but the cube and the towel on the tray"}) {
+    CAPTURE(words);
+    CHECK(told_of_two(goal, words) == "");
+  }
+  CHECK(told_of_two("(over(source, target) and over(helper, target))", "put everything but the cube on the tray") ==
+        "error[P1202]: `t` says \"put everything but the cube on the tray\" and success wants "
+        "`cube` to be there as well");
+}
+
+TEST_CASE("a thing may be of a kind that its name does not say") {
+  CHECK(first_line_of(
+            analyze_with_suite(
+                std::string(kPlaces) +
+                "object coke like red { name \"coke\" }\n"
+                "object fanta like blue { name \"fanta can\" }\n"
+                "metrics m { success = at end (over(source, target) and over(helper, target)) }\n"
+                "task t like base { layout row; source coke; helper fanta; target tray; metrics m; "
+                "say \"put both cans on the tray\" }\n")
+                ->said()) == "");
+}

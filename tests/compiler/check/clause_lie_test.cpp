@@ -50,8 +50,8 @@ TEST_CASE("neither of two, none of several") {
   const std::string both = "(over(source, target) and over(helper, target))";
   CHECK(told_of_two(both, "put neither the cube nor the orange on the tray") ==
         kSays +
-            "\"not put neither the cube nor the orange on the tray\" and success wants `cube` to "
-            "be there");
+            "\"put neither the cube nor the orange on the tray\" and success wants `cube` to be "
+            "there");
   CHECK(told_of_three("put none of the cubes on the tray", "green_cube, yellow_cube")
             .find("success wants `green_cube` to be there") != std::string::npos);
 }

@@ -360,3 +360,15 @@ TEST_CASE("a row of the distractors is that of a task's only one, and of none wh
                  "distractors spoon, eggplant }\n");
   CHECK_MESSAGE(two.find("P1502") != std::string::npos, two);
 }
+
+TEST_CASE("what a table puts into a drawer may be taken out of it") {
+  const std::string table = "start,object,x_m,y_m\n0,source,-0.2,0.1\n0,target,-0.16,-0.075\n";
+  const auto told = [&](const std::string& words) {
+    return said(table, "use \"suite/kitchen.probe\"\n" + std::string(kLayout) +
+                           "task t like put_there { layout given; source carrot; target plate; "
+                           "say \"take {the source} " +
+                           words + " and put it on {the target}\" }\n");
+  };
+  CHECK(told("out of the top drawer") == "");
+  CHECK(told("off {the target}").find("does not begin there") != std::string::npos);
+}
