@@ -12,6 +12,7 @@ namespace probe::audit {
 namespace {
 
 constexpr double kOverlap = 0.01;  // m that two boxes share as seen from above
+constexpr double kFall = 0.01;     // m: less is no fall, as of what a layout puts on a thing
 constexpr double kUnfelt = 0.005;  // m that is seen beyond what is felt
 
 struct Box {
@@ -42,12 +43,23 @@ Box box_of(const plan::Plan& plan, const plan::PlacementRecord& placement) {
   return box;
 }
 
-bool falls_on(const Box& a, const Box& b) {
+bool is_above(const Box& a, const Box& b) {
   for (const int axis : {0, 1}) {
     if (std::min(a.high[axis], b.high[axis]) - std::max(a.low[axis], b.low[axis]) <= kOverlap)
       return false;
   }
-  return a.low.z() >= b.high.z() || b.low.z() >= a.high.z();
+  return a.low.z() >= b.high.z();
+}
+
+// Of all that begin: which do not stand on another of them.
+std::vector<bool> falling_of(const std::vector<Box>& boxes) {
+  std::vector<bool> falling;
+  for (const Box& box : boxes) {
+    falling.push_back(std::none_of(boxes.begin(), boxes.end(), [&](const Box& other) {
+      return is_above(box, other) && box.low.z() - other.high.z() < kFall;
+    }));
+  }
+  return falling;
 }
 
 void add(Box& box, const robot::Primitive& shape) {
@@ -69,10 +81,12 @@ Falls falls_in(const plan::Plan& plan, std::uint32_t task) {
     std::vector<Box> boxes;
     for (const plan::PlacementRecord& placement : placements)
       boxes.push_back(box_of(plan, placement));
+    const std::vector<bool> falling = falling_of(boxes);
     bool any = false;
     for (std::size_t i = 0; i < boxes.size() && !any; ++i) {
       for (std::size_t j = 0; j < i && !any; ++j) {
-        any = falls_on(boxes[i], boxes[j]);
+        any = (falling[i] && is_above(boxes[i], boxes[j])) ||
+              (falling[j] && is_above(boxes[j], boxes[i]));
         if (!any || falls.starts > 0) continue;
         falls.first = falls.of;
         falls.first_pair = fmt::format("`{}` and `{}`",

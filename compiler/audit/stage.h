@@ -12,7 +12,8 @@
 namespace probe::audit {
 
 // Starts of a task in which the upright boxes around two objects overlap as seen from above by more
-// than a centimetre, and one is above the other before they fall.
+// than a centimetre, and one is so far above the other that it falls. What begins on something, as a
+// layout puts it there, is left out.
 struct Falls {
   std::size_t starts = 0, of = 0;
   std::size_t first = 0;   // the first such start

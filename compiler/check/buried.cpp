@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "compiler/check/called.h"
@@ -15,8 +13,10 @@
 #include "compiler/check/goal.h"
 #include "compiler/check/starts.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/role.h"
 #include "compiler/define/support.h"
 #include "compiler/define/telling.h"
+#include "compiler/geometry/footprint.h"
 
 namespace probe::sema {
 namespace {
@@ -46,8 +46,10 @@ class BuriedChecker {
   bool is_source(const Task& task, ObjectId id) const {
     return task.role_of(id) == RoleId::kSource;
   }
-  bool is_new(const Put& put, ObjectId thing) {
-    return told_.insert({put.place->span, put.object, thing}).second;
+  // Of many tasks of one layout the first that no @allow silences is told.
+  std::string cause(const Put& put, ObjectId thing) const {
+    const std::string known = thing == ObjectId::kNone ? "" : model_.objects[thing].name;
+    return cause_of(put.place->span, {model_.objects[put.object].name, known});
   }
 
   // The source under its target, or under a distractor.
@@ -55,23 +57,78 @@ class BuriedChecker {
     const RoleId above = task.role_of(put.object);
     const bool is_target = above == RoleId::kTarget;
     if (!is_source(task, below) || (!is_target && above != RoleId::kNone)) return;
-    if (handles(task, put.object) || !is_new(put, below)) return;
+    if (!covers(task, put.object, below) || handles(task, put.object)) return;
     const About about(reporter_, task.decl_span);
     report_of(reporter_, Code::P0507, task, put.place->span,
               name(below) + " of `" + task.name + "` begins under " + name(put.object) +
                   (is_target ? ", its target" : ""))
         .label(task.span, "the source of this")
         .help("place the one somewhere else, or say what is done before: `solution { put " +
-              model_.objects[put.object].name + " on .. }`");
+              model_.objects[put.object].name + " on .. }`")
+        .cause = cause(put, below);
   }
 
-  // Whether the solution takes the upper thing, or the words speak of it as what is moved.
-  bool handles(const Task& task, ObjectId thing) const {
-    return std::any_of(task.solution.begin(), task.solution.end(), [&](const SkillUse& skill) {
-      const auto& what = skill.what.owner.text;
-      return what == model_.objects[thing].name || (task.role_of(thing) != RoleId::kNone &&
-                                                    what == model_.roles[task.role_of(thing)].name);
+  // Whether most of the lower one is under the other: a nut on a plate is carried with it.
+  bool covers(const Task& task, ObjectId above, ObjectId below) const {
+    constexpr double kMost = 0.75;
+    constexpr int kSteps = 20;  // of a side of the area that is asked
+    const auto shadow_of = [&](ObjectId id) -> std::optional<Footprint> {
+      const auto& placed = task.starts.front().placed;
+      const auto at = std::ranges::find(placed, id, &Start::Placed::object);
+      if (at == placed.end() || !model_.objects[id].has_box) return std::nullopt;
+      return footprint(model_.objects[id], *at);
+    };
+    const auto upper = shadow_of(above), lower = shadow_of(below);
+    if (!upper || !lower) return false;
+    const double wide = lower->reach_along({1, 0}), deep = lower->reach_along({0, 1});
+    int all = 0, covered = 0;
+    for (int i = 0; i < kSteps * kSteps; ++i) {
+      const double across = (i % kSteps + 0.5) / kSteps * 2 - 1;
+      const double along = (static_cast<double>(i / kSteps) + 0.5) / kSteps * 2 - 1;
+      const Vec2 point = {lower->centre.x + across * wide, lower->centre.y + along * deep};
+      if (!is_in(*lower, point)) continue;
+      ++all;
+      covered += is_in(*upper, point);
+    }
+    return covered >= kMost * all;
+  }
+
+  static bool is_in(const Footprint& shadow, const Vec2& point) {
+    return std::ranges::all_of(shadow.axes, [&](const Vec2& axis) {
+      const double length = std::hypot(axis.x, axis.y);
+      if (length < 1e-9) return true;
+      const Vec2 n = {-axis.y / length, axis.x / length};
+      const double apart = (point.x - shadow.centre.x) * n.x + (point.y - shadow.centre.y) * n.y;
+      return std::abs(apart) <= shadow.reach_along(n) + 1e-9;
     });
+  }
+
+  // Whether the solution takes the upper thing, the words speak of it as what is moved, or success
+  // wants it elsewhere. Words that are not understood may say so.
+  bool handles(const Task& task, ObjectId thing) {
+    const bool is_solved =
+        std::any_of(task.solution.begin(), task.solution.end(), [&](const SkillUse& skill) {
+          const auto& what = skill.what.owner.text;
+          const RoleId role = task.role_of(thing);
+          return what == model_.objects[thing].name ||
+                 (role != RoleId::kNone && what == model_.roles[role].name);
+        });
+    if (is_solved) return true;
+    const auto goal = goal_of(model_, task);
+    if (goal.shifted.contains(thing) || goal.raised.contains(thing)) return true;
+    bool is_said = false;
+    for_each_telling(task, [&](const Task& told) {
+      const Clauses clauses = clauses_of(model_, told, callings_);
+      is_said = is_said || !clauses.is_whole ||
+                std::ranges::any_of(clauses.all, [&](const Clause& clause) {
+                  return !clause.certain || (!clause.denied && is_moved(clause, thing));
+                });
+    });
+    return is_said;
+  }
+  static bool is_moved(const Clause& clause, ObjectId thing) {
+    return std::ranges::any_of(clause.what,
+                               [&](const Clause::What& what) { return what.of.contains(thing); });
   }
 
   void check_shut(const Task& task, const Put& put, const OfFixture& of) {
@@ -83,7 +140,6 @@ class BuriedChecker {
         !lies_within(task, put.object, of.fixture, part))
       return;
     const ObjectId shown = fixture.parts[part].thing;
-    if (!is_new(put, shown)) return;
     const std::string drawer = shown == ObjectId::kNone
                                    ? "`" + fixture.name + "." + fixture.joints[*joint].name + "`"
                                    : name(shown);
@@ -95,7 +151,8 @@ class BuriedChecker {
         .label(task.span, "the source of this")
         .note("nothing shows where it is; the expert, which sees everything, opens it by itself")
         .help("say it in the words, or let it begin open: `start " + fixture.name + "." +
-              fixture.joints[*joint].name + " ..`");
+              fixture.joints[*joint].name + " ..`")
+        .cause = cause(put, shown);
   }
 
   // In some start.
@@ -142,15 +199,18 @@ class BuriedChecker {
   // Whether anything of the task speaks of the fixture's part, or of the fixture.
   bool opens(const Task& task, FixtureId id, std::uint32_t part) {
     const Fixture& fixture = model_.fixtures[id];
-    const bool is_solved =
-        std::any_of(task.solution.begin(), task.solution.end(), [&](const SkillUse& skill) {
-          return skill.skill == plan::Skill::kOpen && skill.what.owner.text == fixture.name;
-        });
-    if (is_solved) return true;
     const auto is_of_it = [&](ObjectId thing) {
       const auto& of = model_.objects[thing].of;
       return of && of->fixture == id;
     };
+    const bool is_solved =
+        std::any_of(task.solution.begin(), task.solution.end(), [&](const SkillUse& skill) {
+          if (skill.skill != plan::Skill::kOpen) return false;
+          if (skill.what.owner.text == fixture.name) return true;
+          const auto role = find_role(model_, skill.what.owner.text);
+          return role && std::ranges::any_of(task.objects_in(*role), is_of_it);
+        });
+    if (is_solved) return true;
     const ObjectId shown = fixture.parts[part].thing;
     if (shown != ObjectId::kNone && goal_of(model_, task).ways.contains(shown)) return true;
     bool is_said = false;
@@ -165,7 +225,6 @@ class BuriedChecker {
   Reporter& reporter_;
   Callings callings_;
   Travels travels_;
-  std::set<std::tuple<Span, ObjectId, ObjectId>> told_;
 };
 
 }  // namespace

@@ -28,6 +28,18 @@ const Task* sayer_of(const Model& model, const Task& task) {
   return at == &task ? nullptr : at;
 }
 
+// Whether a task that this one copies has as many steps at this one's rate: it is told there, or an
+// @allow there holds here as well.
+bool is_told_above(const Model& model, const Task& task, const Task& sayer) {
+  for (const Task* at = &task; at != &sayer && at->like != TaskId::kNone;) {
+    at = &model.tasks[at->like];
+    if (at == &sayer) return false;
+    const bool is_looked_at = at->complete && !at->abstract && at->horizon != 0;
+    if (is_looked_at && rate_of(model, *at) == rate_of(model, task)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 void check_horizons(const Model& model, Reporter& reporter) {
@@ -37,6 +49,7 @@ void check_horizons(const Model& model, Reporter& reporter) {
     if (sayer == nullptr) continue;
     const double here = rate_of(model, task), there = rate_of(model, *sayer);
     if (here <= 0 || there <= 0 || std::max(here / there, there / here) < kMostTimes) continue;
+    if (is_told_above(model, task, *sayer)) continue;
     const About about(reporter, task.decl_span);
     const double steps = static_cast<double>(task.horizon);
     const double meant = std::max(1.0, std::round(steps * here / there));

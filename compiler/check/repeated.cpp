@@ -1,10 +1,14 @@
 // P1512: starts of a task that are one start, down to the last bit: episodes of them measure the
 // same thing again, and every count takes them for more than there is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +16,7 @@
 #include "compiler/check/starts.h"
 #include "compiler/define/arm_start.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/role.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 
@@ -60,22 +65,48 @@ Repeated repeated_of(const Model& model, const Task& task) {
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
     while (end < order.size() && order[end].first == order[first].first) ++end;
-    std::set<std::vector<double>> seen;
+    std::map<std::vector<double>, std::size_t> seen;  // the first start that is so
     for (std::size_t i = first; end - first > 1 && i < end; ++i) {
-      if (seen.insert(numbers_of(model, task, order[i].second)).second) continue;
       const std::size_t at = order[i].second;
-      if (found.count++ == 0 || at < found.again) found.again = at, found.of = order[first].second;
+      const auto [earlier, is_new] = seen.try_emplace(numbers_of(model, task, at), at);
+      if (is_new) continue;
+      if (found.count++ == 0 || at < found.again) found.again = at, found.of = earlier->second;
     }
     first = end;
   }
   return found;
 }
 
-std::string turns_text(std::size_t count) {
-  std::string text = "rest yaw 0deg";
+// "rest roll 90deg yaw 0deg, roll 90deg yaw 90deg": a turn, and on from there. Nothing where its
+// angles are not clear.
+std::optional<std::string> turns_text(const Turn& own, std::size_t count) {
+  constexpr double kDegrees = 180 / 3.14159265358979323846, kUpright = 0.999;
+  const auto& [w, x, y, z] = own.rotation;
+  const double pitch_sine = 2 * (w * y - z * x);
+  if (std::abs(pitch_sine) > kUpright) return std::nullopt;
+  const auto degrees = [](double angle) { return std::round(angle * kDegrees * 100) / 100 + 0.0; };
+  const double roll = degrees(std::atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)));
+  const double pitch = degrees(std::asin(pitch_sine));
+  const double yaw = degrees(std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)));
+  std::string lying;
+  if (roll != 0) lying += fmt::format("roll {:g}deg ", roll);
+  if (pitch != 0) lying += fmt::format("pitch {:g}deg ", pitch);
   const std::size_t step = count <= 4 ? 90 : 360 / count;
-  for (std::size_t i = 1; i < count; ++i) text += ", yaw " + std::to_string(i * step) + "deg";
+  std::string text = "rest ";
+  for (std::size_t i = 0; i < count; ++i)
+    text += fmt::format("{}{}yaw {:g}deg", i == 0 ? "" : ", ", lying,
+                        yaw + static_cast<double>(i * step));
   return text;
+}
+
+// Whether the layout says itself how an object is turned.
+bool is_oriented(const Model& model, const Task& task, ObjectId id) {
+  return std::ranges::any_of(model.layouts[task.layout].orients, [&](const Orient& orient) {
+    if (const auto role = find_role(model, orient.what.text)) return task.role_of(id) == *role;
+    if (model.objects[id].name == orient.what.text) return true;
+    return orient.what.text == "distractors" &&
+           std::ranges::find(task.distractors, id) != task.distractors.end();
+  });
 }
 
 // Who has one turn where the layout goes through several.
@@ -86,7 +117,8 @@ struct Unturned {
     for (const ObjectId id : task.objects())
       turns = std::max(turns, rest_of(model, task, id).size());
     for (const ObjectId id : task.objects()) {
-      if (!object && rest_of(model, task, id).size() == 1) object = id;
+      if (!object && !is_oriented(model, task, id) && rest_of(model, task, id).size() == 1)
+        object = id;
     }
     if (!model.layouts[task.layout].by_rest || turns == 1) object.reset();
   }
@@ -105,16 +137,28 @@ void help(const Model& model, const Task& task, const Unturned& unturned, Diagno
     return;
   }
   const Object& object = model.objects[*unturned.object];
-  said.label(object.span, "one turn, where others have " + std::to_string(unturned.turns));
-  said.help("write `" + turns_text(unturned.turns) + "` into `" + object.name + "`").cause =
-      cause_of(object.span, {object.name});
+  const std::string turns = std::to_string(unturned.turns);
+  const std::string one = "one turn, where others have " + turns;
+  const auto pose = std::ranges::find(task.poses, *unturned.object, &PoseOverride::object);
+  if (pose != task.poses.end()) {
+    said.label(pose->span, one);
+    said.help("give this `pose` " + turns + " turns that differ").cause =
+        cause_of(pose->span, {object.name});
+    return;
+  }
+  const auto text = turns_text(object.rest.front(), unturned.turns);
+  said.label(object.span, one);
+  said.help((text ? "write `" + *text + "`" : "write a `rest` of " + turns + " turns that differ") +
+            " into `" + object.name + "`")
+      .cause = cause_of(object.span, {object.name});
 }
 
 }  // namespace
 
 void check_repeated(const Model& model, Reporter& reporter) {
   using Joints = std::vector<double>;
-  std::set<std::pair<const Start*, Joints>> seen;  // tasks share lists of starts
+  // Tasks share lists of starts; which of them is told is for @allow and the causes to say.
+  std::map<std::tuple<const Start*, SceneId, Joints>, Repeated> known;
   for (const Task& task : model.tasks) {
     if (task.starts.size() < 2) continue;
     const Layout& layout = model.layouts[task.layout];
@@ -124,8 +168,10 @@ void check_repeated(const Model& model, Reporter& reporter) {
     if (std::ranges::any_of(views,
                             [&](const View& view) { return model.cameras[view.camera].jitters(); }))
       continue;
-    if (!seen.insert({task.starts.data(), joint_starts_in_all(model, task)}).second) continue;
-    const Repeated repeated = repeated_of(model, task);
+    const auto [at, is_new] = known.try_emplace(
+        {task.starts.data(), task.scene, joint_starts_in_all(model, task)});
+    if (is_new) at->second = repeated_of(model, task);
+    const Repeated& repeated = at->second;
     if (repeated.count == 0) continue;
     const Unturned unturned(model, task);
     // Who writes the same turn twice knows; `audit` counts those starts.

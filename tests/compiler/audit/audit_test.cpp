@@ -539,6 +539,40 @@ suite own trained on bridge_v2 { tasks { lifted, held, met }; seeds 0 }
   CHECK(own.find(Kind::kTouchedOnce, "held") == nullptr);
 }
 
+TEST_CASE("of starts of a file the one is named that is the same in height, too") {
+  const fs::path folder = fs::temp_directory_path() / ("probe_same_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "same.csv") << "start,object,x_m,y_m,z_m\n"
+                                        "0,source,-0.16,-0.1,0.9\n0,target,-0.16,0.1,0.9\n"
+                                        "1,source,-0.16,-0.1,1.0\n1,target,-0.16,0.1,0.9\n"
+                                        "2,source,-0.16,-0.1,1.0\n2,target,-0.16,0.1,0.9\n";
+  const std::string file = (folder / "own.probe").string();
+  std::ofstream(file) << "use \"suite/intact_clean.probe\"\n"
+                         "layout filed { starts \"same.csv\"; drop none }\n"
+                         "task t like carrot_on_plate { layout filed }\n";
+  const auto compiled = build(std::span<const std::string>(&file, 1),
+                              {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
+                               .suite = "",
+                               .library_folders = {VLAPROBE_SOURCE_DIR, VLAPROBE_SOURCE_DIR "/dsl"},
+                               .wants_unheld = true});
+  fs::remove_all(folder);
+  REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
+  const std::string said = render_text(compiled->diagnostics, compiled->sources);
+  CHECK_MESSAGE(said.find("start 2 is start 1") != std::string::npos, said);
+}
+
+TEST_CASE("what a layout puts on a thing does not fall onto it, nor does what stands on that") {
+  const Audited own = audit_text(R"(
+metrics away { success = at end moved_xy(source) > 5cm }
+layout stacked { place target at (-16cm, 0cm); place source on target; place distractors on source
+                 orient by rest; drop 50cm settle 0.5s }
+task carried like on_table { source carrot; target plate; layout stacked; distractors sponge
+                             metrics away; say "push {the source} away" }
+suite own trained on bridge_v2 { tasks { carried }; seeds 0 }
+)");
+  CHECK(own.find(Kind::kFallsOn, "carried") == nullptr);
+}
+
 TEST_CASE(
     "the Google robot's suite: what is irregular in the release is found, and mended in the "
     "other") {
