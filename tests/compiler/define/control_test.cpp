@@ -239,7 +239,7 @@ TEST_CASE("air has a density and a viscosity, each in its unit, and arms that fe
   const std::string airy =
       arm(kOsc) +
       "\ncamera other_eye like eye { mount other.base at (0cm, 0cm, 1m) look (1, 0, -1) }\n"
-      "@allow(horizon)\nvariant windy of red_on_tray { scene airy }\n"
+      "@allow(horizon, \"the same steps\")\nvariant windy of red_on_tray { scene airy }\n"
       "scene airy like bench { robot other at (50cm, 0cm) yaw 180deg; camera other_eye\n"
       "physics 500Hz friction 1 air 1.2kg/m3 viscosity 2e-5Pas }";
   CHECK(said(airy) == "");
