@@ -10,8 +10,8 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/starts.h"
+#include "compiler/geometry/felt_shape.h"
 #include "runtime/robot/hands.h"
-#include "runtime/scene/collision_mesh.h"
 
 namespace probe::sema {
 namespace {
@@ -45,16 +45,14 @@ bool is_taken(const Task& task) {
 }
 
 bool is_convex(const Object& object, const AssetRoot& asset_root) {
-  const auto shape = scene::load_collision_mesh(
-      asset_root.file("objects/" + object.mesh.text + "/collision.obj"),
-      Vec3::Constant(object.scale));
+  const auto shape = felt_shape(object, asset_root);
   return shape.ok() && shape->parts.size() == 1;
 }
 
 }  // namespace
 
 void check_wide(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
-  std::map<ObjectId, bool> convex;  // reads each mesh once
+  std::map<ObjectId, bool> convex;     // reads each mesh once
   constexpr double kClosedGap = 0.02;  // m: closed fingers may stay that far apart
   for (const Task& task : model.tasks) {
     if (!task.complete || task.abstract || task.source == ObjectId::kNone ||

@@ -1,6 +1,6 @@
 #include "compiler/geometry/centre.h"
 
-#include "runtime/scene/collision_mesh.h"
+#include "compiler/geometry/felt_shape.h"
 
 namespace probe::sema {
 
@@ -11,8 +11,7 @@ const Centre& Centres::of(const Object& object) {
     at->second.at = Vec3(object.mass->spread->centre.data());
     return at->second;
   }
-  const std::string path = asset_root_.file("objects/" + object.mesh.text + "/collision.obj");
-  if (const auto shape = scene::load_collision_mesh(path, Vec3::Constant(object.scale))) {
+  if (const auto shape = felt_shape(object, asset_root_)) {
     at->second.at = shape->center_of_mass;
     return at->second;
   }

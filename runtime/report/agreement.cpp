@@ -161,8 +161,42 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
   return table;
 }
 
-std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) {
+namespace {
+
+struct RunRate {
+  stats::Count count;
+  std::size_t starts = 0;  // episodes of one start are no independent trials
+};
+
+// Of a policy's valid episodes in the tasks of all sets of that name, each task once.
+RunRate run_rate(const Benchmark& benchmark, int policy, std::string_view set_name) {
   const int success = benchmark.find_metric("success");
+  std::set<int> tasks;
+  for (const plan::Plan& plan : benchmark.plan_files) {
+    for (const plan::SetRecord& set : plan.sets()) {
+      if (plan.text(set.name) != set_name) continue;
+      for (const std::uint32_t member : plan.members(set))
+        tasks.insert(benchmark.find_task(plan.text(plan.tasks()[member].name)));
+    }
+  }
+  tasks.erase(kAbsent);
+  RunRate of;
+  std::set<std::pair<int, int>> starts;
+  for (const int task : tasks) {
+    for (const Episode& episode : benchmark.of(policy, task)) {
+      if (!episode.valid()) continue;
+      of.count.k += episode.is(success);
+      ++of.count.n;
+      starts.emplace(task, episode.start);
+    }
+  }
+  of.starts = starts.size();
+  return of;
+}
+
+}  // namespace
+
+std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) {
   std::vector<PublishedFigure> added;
   for (const PublishedFigure& real : table.figures) {
     if (!is_rate(real) || real.protocol != kReal) continue;
@@ -170,30 +204,12 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
         added, [&](const PublishedFigure& figure) { return is_same_cell(figure, real); });
     for (std::size_t p = 0; p < benchmark.policies.size() && !is_known; ++p) {
       if (benchmark.policies[p].name != real.policy) continue;
-      stats::Count count;
-      std::vector<int> counted;
-      std::set<std::pair<int, int>> starts;  // episodes of one start are no independent trials
-      for (const plan::Plan& plan : benchmark.plan_files) {
-        for (const plan::SetRecord& set : plan.sets()) {
-          if (plan.text(set.name) != column_of(real)) continue;
-          for (const std::uint32_t member : plan.members(set)) {
-            const int task = benchmark.find_task(plan.text(plan.tasks()[member].name));
-            if (task == kAbsent || std::ranges::find(counted, task) != counted.end()) continue;
-            counted.push_back(task);
-            for (const Episode& episode : benchmark.of(static_cast<int>(p), task)) {
-              if (!episode.valid()) continue;
-              count.k += episode.is(success);
-              ++count.n;
-              starts.emplace(task, episode.start);
-            }
-          }
-        }
-      }
-      if (count.n == 0) continue;
+      const RunRate of = run_rate(benchmark, static_cast<int>(p), column_of(real));
+      if (of.count.n == 0) continue;
       PublishedFigure figure = real;
       figure.source = figure.protocol = kTheseRuns;
-      figure.value = count.rate();
-      figure.trials = static_cast<double>(starts.size());
+      figure.value = of.count.rate();
+      figure.trials = static_cast<double>(of.starts);
       figure.line = 0;
       added.push_back(std::move(figure));
     }
