@@ -1,9 +1,12 @@
 #include "compiler/check/check.h"
 
+#include "compiler/define/remembered.h"
+
 namespace probe::sema {
 
 void check_model(const Checked& checked, Reporter& reporter) {
   const Model& model = checked.model;
+  if (reporter.depth.remembered != nullptr) reporter.depth.remembered->begin_checks(model);
   check_comparisons(model, reporter);
   check_phrases(model, checked.asset_root, reporter);
   check_spatial_words(model, reporter);

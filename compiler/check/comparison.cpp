@@ -1,10 +1,12 @@
 // P07xx: is every variant compared with something that it differs from in one way?
 #include <algorithm>
 #include <bit>
+#include <functional>
 #include <initializer_list>
-#include <map>
 #include <string>
+#include <string_view>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "compiler/check/check.h"
@@ -160,29 +162,31 @@ void check_edge(const Model& model, const Task& task, Reporter& reporter) {
 }
 
 // What two variants of a sweep have to share before anything else of them is compared.
-struct Sweep {
-  Span decl;
-  TaskId baseline = TaskId::kNone;
-  std::string prompt;
-  const Start* starts = nullptr;
-  std::uint64_t horizon = 0;
-  std::uint32_t idle = 0, delay = 0;
-  auto key() const {
-    return std::tie(decl.file.value, decl.begin, baseline, starts, horizon, idle, delay, prompt);
-  }
-  bool operator<(const Sweep& other) const { return key() < other.key(); }
-};
+auto sweep_of(const Task& task) {
+  return std::tuple(task.decl_span.file.value, task.decl_span.begin, task.baseline,
+                    task.starts.data(), task.horizon, task.idle, task.delay,
+                    std::string_view(task.prompt));
+}
+
+std::size_t hash_of_sweep(const Task& task) {
+  std::size_t hash = std::hash<std::string_view>()(task.prompt);
+  for (const std::size_t part : {std::size_t{task.decl_span.file.value} << 32 | task.decl_span.begin,
+                                 static_cast<std::size_t>(task.baseline),
+                                 std::hash<const Start*>()(task.starts.data())})
+    hash = (hash ^ part) * 0x9e37'79b9'7f4a'7c15u;
+  return hash;
+}
 
 // Of those that a `derive` makes of one task none is another: an experiment that is counted twice.
 void check_twins(const Model& model, Reporter& reporter) {
-  std::map<Sweep, std::vector<const Task*>> sweeps;
+  std::unordered_map<std::size_t, std::vector<const Task*>> sweeps;  // by hash
   for (const Task& task : model.tasks) {
     if (!task.derived || !task.complete || task.axes == 0 || task.baseline == TaskId::kNone)
       continue;
-    auto& alike = sweeps[{task.decl_span, task.baseline, whole_prompt(task), task.starts.data(),
-                          task.horizon, task.idle, task.delay}];
+    auto& alike = sweeps[hash_of_sweep(task)];
     const auto twin = std::find_if(alike.begin(), alike.end(), [&](const Task* other) {
-      return axes_between(model, task, *other) == 0;
+      return sweep_of(task) == sweep_of(*other) && whole_prompt(task) == whole_prompt(*other) &&
+             axes_between(model, task, *other) == 0;
     });
     if (twin == alike.end()) {
       alike.push_back(&task);

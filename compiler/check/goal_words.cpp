@@ -13,6 +13,7 @@
 #include "compiler/check/shared.h"
 #include "compiler/check/told.h"
 #include "compiler/check/word_lacks.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/telling.h"
 #include "compiler/define/wording.h"
 
@@ -82,9 +83,12 @@ using Mistaken = std::set<std::pair<TemplateId, ObjectId>>;  // of which it was 
 
 // "the blue cube" of a red one, once for an instruction.
 void says_other_value(const Model& model, const Task& task, Told& told, Mistaken& said,
-                      Reporter& reporter) {
+                      Silence& silence, Reporter& reporter) {
   for (const Clauses::Mistaken& one : told.clauses().mistaken) {
-    if (!said.insert({task.say, one.thing}).second) continue;
+    if (!said.insert({task.say, one.thing}).second) {
+      silence.hold_back();
+      continue;
+    }
     const Object& object = model.objects[one.thing];
     report_of(reporter, Code::P1510, task, task.say_span,
               "`" + task.name + "` calls `" + object.name + "` \"" + one.words + "\", and its `" +
@@ -96,15 +100,15 @@ void says_other_value(const Model& model, const Task& task, Told& told, Mistaken
 
 // "put the cube on the towel" of which success is that it lies on the plate.
 bool says_other_clause(const Model& model, const Task& task, Told& told, Shared& shared,
-                       Mistaken& mistaken, bool is_whole, Reporter& reporter) {
-  Shared::ClauseKey key = shared.clause_key(task);
-  if (shared.has_right_clauses(key)) return false;
-  says_other_value(model, task, told, mistaken, reporter);
+                       Mistaken& mistaken, bool is_whole, Silence& silence,
+                       Reporter& reporter) {
+  if (shared.has_right_clauses(told.key())) return false;
+  says_other_value(model, task, told, mistaken, silence, reporter);
   const auto lack = clause_lack(model, task, told.clauses(), told.goal(), is_whole);
   if (!lack) {
     if (is_whole && moves_unsaid(model, task, told, reporter)) return true;
     // Of a later sentence less is asked.
-    if (is_whole && told.clauses().is_pure) shared.keep_right_clauses(std::move(key));
+    if (is_whole && told.clauses().is_pure) shared.keep_right_clauses(told.key());
     return false;
   }
   report_of(reporter, Code::P1202, task, task.say_span, "`" + task.name + "` " + *lack)
@@ -118,6 +122,7 @@ void check_goal_words(const Model& model, Reporter& reporter) {
   AskedTwice asks_twice(model);
   Shared shared(model);
   Mistaken mistaken;
+  Silence silence(model, reporter, Silent::kGoals);
   const auto check = [&](const Task& task, bool is_last, bool is_whole) {
     if (is_control(model.templates[task.say])) return;
     const About about(reporter, task.decl_span);
@@ -129,13 +134,14 @@ void check_goal_words(const Model& model, Reporter& reporter) {
     if (has_nouns_of_several(model, task) && leaves_noun_open(model, task, told.said(), reporter))
       return;
     // What is done before another sentence comes need not be so at the end.
-    if (is_last && says_other_clause(model, task, told, shared, mistaken, is_whole, reporter))
+    if (is_last && says_other_clause(model, task, told, shared, mistaken, is_whole, silence,
+                                     reporter))
       return;
     // What one of several sentences leaves out another may say.
     if (is_whole && asks_twice(task)) leaves_one_out(model, task, told, reporter);
   };
   for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+    if (task.abstract || !task.complete || silence.is_known(task)) continue;
     std::size_t sentence = 0;
     for_each_telling(task, [&](const Task& told) {
       check(told, ++sentence == sentence_count(task), task.later.empty());

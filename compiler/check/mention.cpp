@@ -8,6 +8,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/check/said.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/telling.h"
 #include "compiler/define/wording.h"
 #include "runtime/base/nouns.h"
@@ -133,6 +134,7 @@ bool Mentions::is_absent(const Task& task, ObjectId named) const {
 
 void check_mentions(const Model& model, Reporter& reporter) {
   Mentions mentions(model);
+  Silence silence(model, reporter, Silent::kMentions);
   const auto check = [&](const Task& task) {
     if (is_control(model.templates[task.say])) return;
     const About about(reporter, task.decl_span);
@@ -152,6 +154,7 @@ void check_mentions(const Model& model, Reporter& reporter) {
   };
   for (const Task& task : model.tasks) {
     if (task.abstract || !task.complete || (task.keeps_absent && !task.allow_absent)) continue;
+    if (silence.is_known(task)) continue;
     for_each_telling(task, check);
   }
 }

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "compiler/check/check.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/telling.h"
 #include "runtime/plan/limits.h"
 #include "runtime/plan/readouts.h"
@@ -208,8 +209,9 @@ void check_metrics(const Model& model, Reporter& reporter) {
   }
   std::set<std::pair<ExprRef, std::uint64_t>> searched, reported;  // with the horizon
   std::set<std::pair<std::uint32_t, std::uint32_t>> without_success, without_fingers;
+  Silence silence(model, reporter, Silent::kMetrics, Silence::Says::kOnce);
   for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+    if (task.abstract || !task.complete || silence.is_known(task)) continue;
     const About about(reporter, task.decl_span);
     check_success(model, reporter, task, without_success);
     check_count(model, reporter, task, without_success);

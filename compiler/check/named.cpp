@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "compiler/check/check.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/task.h"
 #include "compiler/define/telling.h"
 #include "compiler/model/mentioned.h"
@@ -13,8 +14,9 @@ namespace probe::sema {
 void check_named(const Model& model, Reporter& reporter) {
   MentionedIn mentioned(model);
   std::set<std::pair<std::uint32_t, std::uint32_t>> said;  // one place is one mistake
+  Silence silence(model, reporter, Silent::kNamed, Silence::Says::kOnce);
   for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+    if (task.abstract || !task.complete || silence.is_known(task)) continue;
     const About about(reporter, task.decl_span);
     const std::vector<ObjectId> objects = task.objects();
     const Mentioned& found = mentioned.metrics(measured_in(task));

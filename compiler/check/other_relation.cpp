@@ -58,7 +58,7 @@ bool says_other_relation(const Model& model, const Task& task, Told& told, Share
                          Reporter& reporter) {
   const std::vector<ExprRef> success = Shared::success_of(task);
   const std::set<PredicateId>& judged = shared.relations(success);
-  if (judged.empty() || shared.is_known_right(task.say, success)) return false;
+  if (judged.empty() || shared.has_right_relations(told.key())) return false;
   const std::string& text = shared.text(task.say).folded;
   const std::string elsewhere = other_relation(model, judged, text);
   bool is_said = false, is_of_its_own = false;
@@ -88,7 +88,7 @@ bool says_other_relation(const Model& model, const Task& task, Told& told, Share
         .point("that is said by " + listed(relation.words))
         .label(relation.span, "declared here");
   }
-  if (!is_said && !is_of_its_own) shared.keep_right(task.say, success);
+  if (!is_said && !is_of_its_own) shared.keep_right_relations(told.key());
   return is_said;
 }
 

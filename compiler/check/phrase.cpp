@@ -10,6 +10,7 @@
 #include "compiler/check/unclear_starts.h"
 #include "compiler/define/in_start.h"
 #include "compiler/define/likeness.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/task.h"
 #include "compiler/define/telling.h"
 #include "compiler/define/template.h"
@@ -31,6 +32,7 @@ struct TaskLanguage {
   Unfit& unfit;
   Relations& relations;
   UnclearStarts& unclear;
+  Silence& silence;
 
   // Where the words for a role are chosen, here or in what is copied.
   const Span& chosen(RoleId role) const {
@@ -70,7 +72,7 @@ struct TaskLanguage {
     const std::vector<ObjectId> objects = rivals_of(role, wanted_id, denotable(model, task));
     const Denotation meant = denote(model, objects, phrase, wanted_id);
     if (!meant.fits) {
-      if (!unfit.insert({&phrase, wanted_id}).second) return;
+      if (!unfit.insert({&phrase, wanted_id}).second) return silence.hold_back();
       reporter
           .report(Code::P0401, place(role),
                   quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
@@ -429,13 +431,14 @@ void check_phrases(const Model& model, const AssetRoot& asset_root, Reporter& re
   Unfit unfit;
   Relations relations(model, asset_root, reporter.diagnostics);
   UnclearStarts unclear(model, relations);
+  Silence silence(model, reporter, Silent::kPhrases);
   for (const Task& task : model.tasks) {
-    if (task.abstract || !task.complete) continue;
+    if (task.abstract || !task.complete || silence.is_known(task)) continue;
     const About about(reporter, task.decl_span);
     // A second slot of one name says nothing new, unless it counts; in a later sentence, either.
     std::set<std::tuple<std::string, bool, syntax::SlotCount>> checked;
     for_each_telling(task, [&](const Task& told) {
-      const TaskLanguage check{model, reporter, told, unfit, relations, unclear};
+      const TaskLanguage check{model, reporter, told, unfit, relations, unclear, silence};
       for (const Template::Part& part : model.templates[told.say].parts) {
         if (part.slot &&
             checked.insert({part.slot->name.text, part.slot->avoid, part.slot->count}).second)

@@ -16,6 +16,7 @@
 #include "compiler/check/starts.h"
 #include "compiler/define/arm_start.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/role.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
@@ -159,8 +160,9 @@ void check_repeated(const Model& model, Reporter& reporter) {
   using Joints = std::vector<double>;
   // Tasks share lists of starts; which of them is told is for @allow and the causes to say.
   std::map<std::tuple<const Start*, SceneId, Joints>, Repeated> known;
+  Silence silence(model, reporter, Silent::kRepeated);
   for (const Task& task : model.tasks) {
-    if (task.starts.size() < 2) continue;
+    if (task.starts.size() < 2 || silence.is_known(task)) continue;
     const Layout& layout = model.layouts[task.layout];
     // Those differ by the start's number.
     if (layout.jitter > 0 || layout.joints_jitter > 0) continue;

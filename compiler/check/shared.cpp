@@ -132,14 +132,6 @@ const Clauses& Shared::clauses(const Task& task) {
   return at->second;
 }
 
-bool Shared::is_known_right(TemplateId say, const std::vector<ExprRef>& success) const {
-  return right_.contains({say, success});
-}
-
-void Shared::keep_right(TemplateId say, const std::vector<ExprRef>& success) {
-  right_.insert({say, success});
-}
-
 Shared::ClauseKey Shared::clause_key(const Task& task) const {
   Filled by_role =
       filled(task, [&](ObjectId id) { return model_.exprs.names_objects || !task.is_object(id); });

@@ -42,16 +42,14 @@ class Shared {
   const Said& said(const Task& task);
   const Clauses& clauses(const Task& task);
 
-  // Words and success of which nothing was to be said but for what the task itself is.
-  bool is_known_right(TemplateId say, const std::vector<ExprRef>& success) const;
-  void keep_right(TemplateId say, const std::vector<ExprRef>& success);
-
-  // The same of clauses, of tasks whose roles are filled alike: each by as many objects, by the
-  // same parts; by the same objects where expressions name some.
+  // Words and success of which nothing was to be said, of tasks whose roles are filled alike: each
+  // by as many objects, by the same parts; by the same objects where expressions name some.
   using ClauseKey = std::tuple<TemplateId, std::vector<ExprRef>, Filled>;
   ClauseKey clause_key(const Task& task) const;
+  bool has_right_relations(const ClauseKey& key) const { return right_relations_.contains(key); }
+  void keep_right_relations(const ClauseKey& key) { right_relations_.insert(key); }
   bool has_right_clauses(const ClauseKey& key) const { return right_clauses_.contains(key); }
-  void keep_right_clauses(ClauseKey key) { right_clauses_.insert(std::move(key)); }
+  void keep_right_clauses(const ClauseKey& key) { right_clauses_.insert(key); }
 
  private:
   using Judged = std::tuple<bool, ExprRef, plan::Readout>;
@@ -71,8 +69,7 @@ class Shared {
   std::map<HeardKey, Clauses> clauses_;
   std::map<std::vector<ExprRef>, std::set<PredicateId>> relations_;
   std::map<std::vector<ExprRef>, std::set<PartOf>> parts_;
-  std::set<std::pair<TemplateId, std::vector<ExprRef>>> right_;
-  std::set<ClauseKey> right_clauses_;
+  std::set<ClauseKey> right_relations_, right_clauses_;
 };
 
 }  // namespace probe::sema

@@ -2,6 +2,7 @@
 // boxes here: collision hulls are not known to the compiler.
 #include "compiler/check/starts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
@@ -10,6 +11,7 @@
 
 #include "compiler/check/check.h"
 #include "compiler/define/fixture.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/task.h"
 #include "compiler/define/views.h"
 
@@ -50,30 +52,49 @@ std::string at(const Object& object, const Start::Placed& placed) {
   return object.name + " at (" + centimetres(placed.x) + ", " + centimetres(placed.y) + ")";
 }
 
+namespace {
+
+// Whether what it begins with is told by the text alone: what lies in and on fixtures is asked of
+// their models.
+bool is_plain(const Model& model, const Task& task) {
+  return model.scenes[task.scene].fixtures.empty() &&
+         std::ranges::none_of(model.layouts[task.layout].places, &Place::is_put);
+}
+
+}  // namespace
+
 void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& reporter) {
   // Tasks share lists of starts; what was fine for one in its scene is fine for the next, and what
   // a table of starts has is said of the first task that begins so.
   using Where = std::pair<SceneId, std::vector<double>>;
   std::map<const Start*, std::set<Where>> stands_in;
-  std::map<const Start*, std::set<std::pair<Where, std::vector<CameraId>>>> fine_in;
+  // With whether nothing at all was said of them.
+  std::map<const Start*, std::map<std::pair<Where, std::vector<CameraId>>, bool>> fine_in;
   std::vector<bool> fine(model.tasks.size(), false);
   Arms arms;
   Lookouts lookouts;
   Travels travels(model, asset_root);
   const bool is_immediate = reporter.depth.is_immediate;
   if (!is_immediate) check_fixture_places(model, travels, reporter);
+  Silence silence(model, reporter, Silent::kStarts);
   std::size_t at = 0;
   for (const Task& task : model.tasks) {
     const std::size_t index = at++;
     if (task.starts.empty()) continue;
     if (reporter.is_stopped()) return;
+    if (is_plain(model, task) && silence.is_known(task)) {
+      fine[index] = true;
+      continue;
+    }
     const Where where{task.scene, joint_starts_in_all(model, task)};
     std::vector<CameraId> cameras;
     for (const View& view : views_of(model, task)) cameras.push_back(view.camera);
     auto& known = fine_in[task.starts.data()];
     auto& stands = stands_in[task.starts.data()];
-    if (task.motions.empty() && known.contains({where, cameras})) {
+    const auto fine_before = known.find({where, cameras});
+    if (task.motions.empty() && fine_before != known.end()) {
       fine[index] = true;
+      if (!fine_before->second) silence.hold_back();
       continue;
     }
     const About about(reporter, task.decl_span);
@@ -97,7 +118,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
     if (is_reached) check_frame(starts, lookouts);
     if (!is_immediate) check_motion(starts, travels);
     fine[index] = reporter.diagnostics.size() == before;
-    if (is_settled()) known.insert({where, std::move(cameras)});
+    if (is_settled()) known.insert({{where, std::move(cameras)}, fine[index]});
   }
 }
 

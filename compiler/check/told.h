@@ -35,6 +35,12 @@ class Told {
     return *clauses_;
   }
 
+  // By what it is filled with: alike tasks have equal ones.
+  const Shared::ClauseKey& key() {
+    if (!key_) key_ = shared_.clause_key(task_);
+    return *key_;
+  }
+
   // Those of the table that are said.
   const std::vector<GoalWords>& words() const { return text_.words; }
 
@@ -59,6 +65,7 @@ class Told {
   const Said* said_ = nullptr;
   const Goal* goal_ = nullptr;
   const Clauses* clauses_ = nullptr;
+  std::optional<Shared::ClauseKey> key_;
 };
 
 }  // namespace probe::sema

@@ -6,6 +6,7 @@
 
 #include "compiler/define/axes.h"
 #include "compiler/define/in_start.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/role.h"
 #include "compiler/define/scene.h"
 #include "compiler/define/set.h"
@@ -386,8 +387,15 @@ class Derive {
     } else if (const auto* templates = std::get_if<syntax::BinderTemplates>(&binder.over)) {
       const auto& declared = context_.symbols.templates.names();
       const std::string frame = fold_case(templates->frame.text);
+      const auto index = static_cast<std::uint32_t>(&base - &*model.tasks.begin());
+      Remembered* const remembered = context_.reporter.depth.remembered;
+      if (const auto* known = remembered ? remembered->choices(index, frame) : nullptr) {
+        for (const std::uint32_t i : *known) values.push_back(declared[i].text);
+        return values;
+      }
+      std::vector<std::uint32_t> found;
       Task other = base;
-      for (std::size_t i = 0; i < declared.size(); ++i) {
+      for (std::uint32_t i = 0; i < declared.size(); ++i) {
         other.say = static_cast<TemplateId>(i);
         const Template& words = model.templates[other.say];
         if (words.frame != frame || !fills_all(base, words) || !counts_fit(model, base, words))
@@ -395,8 +403,11 @@ class Derive {
         other.prompt = render_prompt(model, other);
         // A control of the task's own words is none.
         if (is_control(words) && other.prompt == base.prompt) continue;
-        if (differs(model, other, base)) values.push_back(declared[i].text);
+        if (!differs(model, other, base)) continue;
+        values.push_back(declared[i].text);
+        found.push_back(i);
       }
+      if (remembered != nullptr) remembered->keep_choices(index, frame, std::move(found));
     } else if (const auto* objects = std::get_if<syntax::BinderObjects>(&binder.over)) {
       for (const syntax::Name& object : objects->objects) {
         const ObjectId id = *peek_thing(context_, object.text);

@@ -2,12 +2,20 @@
 
 #include <utility>
 
+#include "compiler/define/remembered.h"
+
 namespace probe::sema {
 
 std::optional<robot::RobotModel> described_by(Context& context, const Spelled& urdf,
                                               const std::string& what) {
-  auto model = robot::load_urdf(context.asset_root.file(urdf.text));
-  if (model.ok()) return std::move(model).value();
+  const std::string path = context.asset_root.file(urdf.text);
+  Remembered* const remembered = context.reporter.depth.remembered;
+  if (const auto* known = remembered ? remembered->described(path) : nullptr) return *known;
+  auto model = robot::load_urdf(path);
+  if (model.ok()) {
+    if (remembered != nullptr) remembered->keep_described(path, *model);
+    return std::move(model).value();
+  }
   Diagnostic& said = context
                          .report(Situation::kUrdfUnreadable, urdf.span,
                                  what + " cannot be read: " + model.failure().message)

@@ -11,6 +11,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/fixture.h"
 #include "compiler/define/in_start.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/role.h"
 #include "compiler/define/support.h"
 #include "compiler/define/task.h"
@@ -547,6 +548,17 @@ bool starts_correspond(const Task& a, const Task& b) {
          });
 }
 
+namespace {
+
+// Whether nothing but declarations and numbers says where its things are: no phrase, and nothing in
+// or on another.
+bool is_told_by_numbers(const Model& model, const Task& task) {
+  return task.clear.empty() &&
+         std::ranges::none_of(model.layouts[task.layout].places, &Place::is_put);
+}
+
+}  // namespace
+
 void define_starts(Context& context) {
   Model& model = context.model;
   std::map<std::vector<double>, const std::vector<Start>*> known;
@@ -558,12 +570,21 @@ void define_starts(Context& context) {
   for (Task& task : model.tasks) {
     if (task.abstract || !task.complete) continue;
     const About about(context.reporter, task.decl_span);
-    const std::vector<Start>*& starts = known[starts_key(model, task)];
+    const std::vector<double> made_of = starts_key(model, task);
+    const std::vector<Start>*& starts = known[made_of];
     if (starts == nullptr) {
       const Layout& layout = model.layouts[task.layout];
       std::optional<LayoutProblem> problem;
-      std::vector<Start> found =
-          enumerate_starts(supports, model, layout, task, kMaxEpisodes - episodes, problem);
+      // Where nothing but what is declared, and by number, says where things are.
+      Remembered* const remembered =
+          is_told_by_numbers(model, task) ? context.reporter.depth.remembered : nullptr;
+      const std::vector<Start>* const before = remembered ? remembered->starts(task.layout, made_of) : nullptr;
+      const std::size_t most = kMaxEpisodes - episodes;
+      std::vector<Start> found = before != nullptr && before->size() <= most
+                                     ? *before
+                                     : enumerate_starts(supports, model, layout, task, most, problem);
+      if (remembered != nullptr && before == nullptr && !problem)
+        remembered->keep_starts(task.layout, made_of, found);
       // A file that could not be read has been reported.
       if (!layout.given_span.is_none() && layout.given.empty()) continue;
       if (problem) {

@@ -10,6 +10,7 @@
 #include "compiler/define/define.h"
 #include "compiler/define/metrics.h"
 #include "compiler/define/motion.h"
+#include "compiler/define/remembered.h"
 #include "compiler/define/role.h"
 #include "compiler/define/solution.h"
 #include "compiler/define/task_fit.h"
@@ -167,6 +168,22 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   const About about(context_.reporter, task.decl_span);
   read_allows(*declared.decl, *declared.body, task);
   read_statements(context_, declared, task, poisoned);
+  Remembered* const remembered = context_.reporter.depth.remembered;
+  if (remembered != nullptr) {
+    if (poisoned) remembered->forget(index);
+    if (const auto* known = poisoned ? nullptr : remembered->followed(model, index, task)) {
+      task.placed = known->placed;
+      task.judged = judged_metrics(model, task);
+      task.prompt = known->prompt;
+      task.ood = known->ood;
+      task.complete = true;
+      poison_[index] = false;
+      defined_[index] = true;
+      model.tasks[static_cast<TaskId>(index)] = std::move(task);
+      return;
+    }
+  }
+  const std::size_t said = context_.diagnostics.size();
   poisoned = poisoned || has_broken_part(model, task);
   for (const auto& [role, refer] : task.refer) {
     if (!poisoned) check_refer(context_, task, role, refer, poisoned);
@@ -202,6 +219,8 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
     for (std::size_t i = 0; i < task.later.size(); ++i)
       task.later[i].text = render_prompt(model, telling(task, i + 1));
     task.ood = out_of_distribution(model, task);
+    if (remembered != nullptr && context_.diagnostics.size() == said)
+      remembered->keep(index, task);
   }
   model.tasks[static_cast<TaskId>(index)] = std::move(task);
 }
@@ -329,7 +348,14 @@ void TaskTable::compare(std::uint32_t index, bool last_chance) {
   }
   if (task.complete && task.baseline != TaskId::kNone &&
       context_.model.tasks[task.baseline].complete) {
+    Remembered* const remembered = context_.reporter.depth.remembered;
+    const auto baseline = static_cast<std::uint32_t>(task.baseline);
+    if (const auto known = remembered ? remembered->axes(index, baseline) : std::nullopt) {
+      task.axes = *known;
+      return;
+    }
     task.axes = axes_between(context_.model, task, context_.model.tasks[task.baseline]);
+    if (remembered != nullptr) remembered->keep_axes(index, baseline, task.axes);
   }
 }
 
@@ -364,6 +390,8 @@ void break_cycles(Context& context) {
 
 void define_tasks(Context& context) {
   for (std::size_t i = 0; i < context.symbols.set_decls.size(); ++i) context.model.sets.add({});
+  if (context.reporter.depth.remembered != nullptr)
+    context.reporter.depth.remembered->begin(context);
   TaskTable table(context);
   const std::size_t written = context.symbols.task_decls.size();
   const bool derives = !context.symbols.derive_decls.empty();

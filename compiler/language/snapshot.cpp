@@ -18,7 +18,8 @@ std::unique_ptr<Snapshot> Snapshot::read(const std::string& root, const Unsaved&
 }
 
 std::unique_ptr<Snapshot> Snapshot::analysed(const std::string& root, const Unsaved& unsaved,
-                                             const Setting& setting) {
+                                             const Setting& setting,
+                                             sema::Remembered* remembered) {
   auto out = read(root, unsaved, setting);
   if (out == nullptr) return nullptr;
   std::vector<const syntax::File*> trees;
@@ -27,7 +28,7 @@ std::unique_ptr<Snapshot> Snapshot::analysed(const std::string& root, const Unsa
   texts.push_back(out->path(out->root_));
   for (const syntax::ParseResult& file : out->program_.files) texts.push_back(out->path(file.file.id));
   out->model_ = sema::analyze(out->sources_, trees, setting.asset_root.beside(texts), out->diagnostics_,
-                              {out->root_}, {.is_immediate = true, .wants = &out->wants_});
+                              {out->root_}, {.is_immediate = true, .wants = &out->wants_, .remembered = remembered});
   return out;
 }
 

@@ -30,9 +30,10 @@ using Unsaved = std::map<std::string, std::string>;
 class Snapshot {
  public:
   // What the file reaches by `use`, analysed without what takes long (sema::Depth). The root may be
-  // a path that only `unsaved` has. Nothing where it is nowhere.
+  // a path that only `unsaved` has. Nothing where it is nowhere. `remembered`: of what it was before.
   static std::unique_ptr<Snapshot> analysed(const std::string& root, const Unsaved& unsaved,
-                                            const Setting& setting);
+                                            const Setting& setting,
+                                            sema::Remembered* remembered = nullptr);
   // The same without a model and diagnostics: trees and names.
   static std::unique_ptr<Snapshot> parsed(const std::string& root, const Unsaved& unsaved,
                                           const Setting& setting);

@@ -21,11 +21,14 @@ struct WantedNumber {
   std::string takes;  // "`density` takes a density"
 };
 
+class Remembered;  // define/remembered.h
+
 // How far a text is looked at: whole, or while it is being typed.
 struct Depth {
   bool is_immediate = false;                  // without reach, travels and the boxes of meshes
   const std::atomic<bool>* stop = nullptr;    // once it is true, nothing more is worth finding
   std::vector<WantedNumber>* wants = nullptr;  // where to keep what every number should measure
+  Remembered* remembered = nullptr;            // of the text before this one, while it is typed
 };
 
 struct Reporter {

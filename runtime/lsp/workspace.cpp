@@ -177,7 +177,10 @@ bool Workspace::refresh() {
     } else {
       program = std::make_unique<Program>();
       program->root = root;
-      program->now = Snapshot::analysed(root, unsaved, setting_);
+      program->remembered = old != before.end() && (*old)->remembered != nullptr
+                                ? std::move((*old)->remembered)
+                                : std::make_unique<sema::Remembered>();
+      program->now = Snapshot::analysed(root, unsaved, setting_, program->remembered.get());
       if (program->now == nullptr) continue;
       if (old != before.end()) carry_over(**old, *program);
       is_new = true;

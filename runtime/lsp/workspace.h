@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/define/remembered.h"
 #include "compiler/language/snapshot.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/lsp/documents.h"
@@ -21,6 +22,7 @@ namespace probe::lsp {
 struct Program {
   std::string root;
   std::unique_ptr<language::Snapshot> now;
+  std::unique_ptr<sema::Remembered> remembered;  // for the next
   // What only the whole `check` finds (reach, travels, meshes, files of assets), in spans of `now`.
   std::deque<Diagnostic> slow;
   bool is_checked = false;  // `slow` is of this text; else it is what is left of the one before
