@@ -100,6 +100,19 @@ struct FixtureReader {
     std::erase_if(fixture.named, [&](const Fixture::Part& old) { return old.name == part.name; });
     fixture.named.push_back(std::move(part));
   }
+  void operator()(const syntax::ShownStmt& stmt) {
+    Fixture::Shown shown;
+    shown.link = spelled(stmt.link);
+    shown.joint = spelled(stmt.joint);
+    shown.from_below = stmt.from_below;
+    shown.value = read_either(context, stmt.value, dim::kAngle, dim::kLength,
+                              {"a joint stands at a length, or at an angle where it turns",
+                               plan::Magnitude::kJointPosition});
+    shown.value_span = stmt.value.span;
+    std::erase_if(fixture.shown,
+                  [&](const Fixture::Shown& old) { return old.link.text == shown.link.text; });
+    fixture.shown.push_back(std::move(shown));
+  }
   void operator()(const syntax::RegionStmt& stmt) {
     const auto region = read_region(context, stmt);
     if (!region) return;

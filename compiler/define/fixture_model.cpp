@@ -276,6 +276,52 @@ void build_regions(Context& context, Fixture& fixture) {
   }
 }
 
+// A link that vanishes is one that only is seen: what is felt stays where it is.
+void build_shown(Context& context, Fixture& fixture) {
+  const robot::RobotModel& model = *fixture.model;
+  std::vector<std::string_view> links, joints;
+  const auto is_seen = [](const robot::Link& link) {
+    return !link.visuals.empty() || !link.drawn.empty();
+  };
+  for (const robot::Link& link : model.links) {
+    if (!link.can_collide() && is_seen(link)) links.push_back(link.name);
+  }
+  for (const Fixture::Joint& joint : fixture.joints) joints.push_back(joint.name);
+  for (Fixture::Shown& shown : fixture.shown) {
+    const int link = model.find_link(shown.link.text);
+    if (link < 0) {
+      unknown(context, "link", shown.link, fixture, links);
+    } else if (model.links[static_cast<std::size_t>(link)].can_collide()) {
+      context
+          .report(Situation::kFeltUnseen, shown.link.span,
+                  "link `" + shown.link.text + "` can be touched, and is always seen")
+          .label(fixture.urdf.span, "described here")
+          .help("give what comes and goes a link of its own without collision");
+    } else if (!is_seen(model.links[static_cast<std::size_t>(link)])) {
+      context
+          .report(Situation::kFeltUnseen, shown.link.span,
+                  "link `" + shown.link.text + "` has no visual, nothing shows it")
+          .label(fixture.urdf.span, "described here");
+    }
+    const auto joint = std::ranges::find(fixture.joints, shown.joint.text, &Fixture::Joint::name);
+    if (joint == fixture.joints.end()) {
+      unknown(context, "joint that moves", shown.joint, fixture, joints);
+      continue;
+    }
+    shown.index = static_cast<std::uint32_t>(joint - fixture.joints.begin());
+    if (!shown.value) continue;
+    const Dimension& wanted = joint->slides ? dim::kLength : dim::kAngle;
+    if (shown.value->dimension == wanted) {
+      shown.at = shown.value->si();
+    } else {
+      context
+          .report(Code::P0302, shown.value_span,
+                  "expected " + name_of(wanted) + ", found " + name_of(shown.value->dimension))
+          .point("joint `" + joint->name + "` " + (joint->slides ? "slides" : "turns"));
+    }
+  }
+}
+
 }  // namespace
 
 bool is_within(const Fixture::Joint& joint, double position) {
@@ -303,6 +349,7 @@ void read_description(Context& context, Fixture& fixture) {
   build_joints(context, fixture);
   build_parts(context, fixture);
   build_regions(context, fixture);
+  build_shown(context, fixture);
 }
 
 }  // namespace probe::sema

@@ -63,6 +63,12 @@ std::uint32_t Emitter::fixture_index(const sema::Scene& scene, sema::FixtureId i
     parts.push_back(row);
   }
   record.parts = plan::append(records().parts, std::span<const plan::PartRecord>(parts));
+  for (const sema::Fixture::Shown& shown : fixture.shown) {
+    const auto side = shown.from_below ? plan::ShownSide::kBelow : plan::ShownSide::kAbove;
+    if (record.shown.count++ == 0) record.shown.first = size32(records().shown);
+    records().shown.push_back(
+        {writer_.text(shown.link.text), shown.index, static_cast<std::uint32_t>(side), shown.at});
+  }
   for (const sema::Fixture::OwnRegion& own : fixture.regions) {
     add_regions({own.region}, fixture.name, plan::BodyKind::kPart, record.parts.first + own.part);
   }

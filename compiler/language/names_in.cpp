@@ -230,6 +230,11 @@ class Walker {
     all(stmt.body);
   }
 
+  void operator()(const ShownStmt& stmt) {
+    name(stmt.link, Kind::kLink, owner_);
+    name(stmt.joint, Kind::kMember, owner_);
+  }
+
   // ---- scenes
   void operator()(const SceneRobotStmt& stmt) { name(stmt.robot, Kind::kRobot); }
   void operator()(const JointsStmt&) {}

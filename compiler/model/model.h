@@ -292,6 +292,15 @@ struct Fixture {
     Spelled text;            // in instructions; not said: as its part
     ObjectId thing = ObjectId::kNone;
   };
+  // A link that is seen only while a joint stands so.
+  struct Shown {
+    Spelled link, joint;
+    bool from_below = false;  // at `value` and below, else at it and above
+    std::optional<Quantity> value;
+    Span value_span;
+    std::uint32_t index = 0;  // of joints
+    double at = 0;            // m or rad
+  };
   std::string name;
   bool broken = false;  // as of an object
   FixtureId like = FixtureId::kNone;
@@ -304,6 +313,7 @@ struct Fixture {
   std::vector<Said> said;
   std::vector<Part> named;  // as declared
   std::vector<OwnRegion> regions;
+  std::vector<Shown> shown;
   std::optional<robot::RobotModel> model;
   std::vector<Joint> joints;  // all that move, in the URDF's order
   std::vector<Part> parts;    // all that can be touched, in the URDF's order

@@ -19,6 +19,7 @@ std::string_view name_in(const syntax::CellsStmt& stmt) { return stmt.name.text;
 std::string_view name_in(const syntax::RegionStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::FixtureJointStmt& stmt) { return stmt.joint.text; }
 std::string_view name_in(const syntax::PartStmt& stmt) { return stmt.name.text; }
+std::string_view name_in(const syntax::ShownStmt& stmt) { return stmt.link.text; }
 std::string_view name_in(const syntax::PoseStmt& stmt) { return stmt.object.text; }
 std::string_view name_in(const syntax::MovesStmt& stmt) { return stmt.what.text; }
 std::string_view name_in(const syntax::MetricStmt& stmt) { return stmt.name.text; }

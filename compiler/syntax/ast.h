@@ -627,8 +627,15 @@ struct PartStmt {  // `part top_drawer link top name "top drawer"`
   std::vector<ObjectStmt>
       body;  // `{ category drawer; phrase upper spatial "upper drawer" means .. }`
 };
-using FixtureBodyStmt =
-    std::variant<UrdfStmt, FixtureAtStmt, FrictionStmt, FixtureJointStmt, PartStmt, RegionStmt>;
+struct ShownStmt {  // `shown glow while knob >= 0.5rad`
+  Span span;
+  Name link;
+  Name joint;
+  bool from_below = false;  // `<=`
+  Quantity value;
+};
+using FixtureBodyStmt = std::variant<UrdfStmt, FixtureAtStmt, FrictionStmt, FixtureJointStmt,
+                                     PartStmt, RegionStmt, ShownStmt>;
 struct FixtureDecl {
   Name name;
   std::optional<Name> like;

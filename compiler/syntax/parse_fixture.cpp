@@ -64,6 +64,21 @@ FixtureBodyStmt Parser::fixture_region() {
   return out;
 }
 
+FixtureBodyStmt Parser::fixture_shown() {
+  ShownStmt out;
+  out.link = name();
+  expect_word("while");
+  out.joint = name();
+  out.from_below = at(TokenKind::kLessEqual);
+  if (out.from_below) {
+    advance();
+  } else {
+    expect(TokenKind::kGreaterEqual);
+  }
+  out.value = quantity();
+  return out;
+}
+
 RegionStmt Parser::region(bool has_owner) {
   RegionStmt out;
   out.name = name();

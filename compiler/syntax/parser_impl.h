@@ -218,6 +218,7 @@ class Parser {
   FixtureBodyStmt fixture_joint();
   FixtureBodyStmt fixture_part();
   FixtureBodyStmt fixture_region();
+  FixtureBodyStmt fixture_shown();
   RegionStmt region(bool has_owner);
   StartStmt joint_start(bool may_be_bound);
 

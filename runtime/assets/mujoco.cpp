@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -271,8 +272,12 @@ class Conversion {
       }
       add_sites(*links[i].link, i == 0 ? "" : links[i].name, taken);
     }
-    add_file(below + "/" + asset_.name + ".urdf", fixture_urdf(asset_.name, links, asset_.joints));
     FixtureText text;
+    for (const MujocoGlow& glow : options_.glows) {
+      taken.insert(regions.begin(), regions.end());
+      PROBE_TRY(add_glow(glow, below, taken, links, text));
+    }
+    add_file(below + "/" + asset_.name + ".urdf", fixture_urdf(asset_.name, links, asset_.joints));
     text.name = asset_.name;
     text.urdf = below + "/" + asset_.name + ".urdf";
     text.called = called_;
@@ -280,6 +285,47 @@ class Conversion {
     text.acting = std::move(acting);
     asset_.declaration = fixture_text(text, links, asset_.joints, asset_.sites);
     return {};
+  }
+
+  // A site as a link of its own, fixed to the one that has it.
+  Status add_glow(const MujocoGlow& glow, const std::string& below, std::set<std::string>& taken,
+                  std::vector<DescribedLink>& links, FixtureText& text) {
+    std::size_t joint = 0;
+    while (joint < asset_.joints.size() && thing_.links[joint + 1].joint->name != glow.joint)
+      ++joint;
+    if (joint == asset_.joints.size())
+      return Failure{Fault::kAsset, "no joint `" + glow.joint + "`, which is to show a site",
+                     options_.file};
+    for (std::size_t i = 0; i < thing_.links.size(); ++i) {
+      for (const Placed<mjcf::Site>& placed : thing_.links[i].sites) {
+        if (placed.it->name != glow.site) continue;
+        mjcf::Geom& geom = glows_.emplace_back();
+        geom.shape = placed.it->shape;
+        geom.size = placed.it->size;
+        geom.rgba = placed.it->rgba;
+        geom.group = placed.it->group;
+        geom.contype = geom.conaffinity = 0;
+        geom.at = placed.it->at;
+        MujocoLink& link = glow_links_.emplace_back();
+        link.parent = static_cast<int>(i);
+        link.geoms.push_back({&geom, placed.pose});
+        DescribedLink described;
+        described.link = &link;
+        described.name = free_name(glow.site, "_glow", taken);
+        described.glb = "meshes/" + described.name + ".glb";
+        PROBE_ASSIGN(std::string seen, seen_link(model_, link, {geom.group}, described.name,
+                                                 meshes_, pictures_, asset_.notes));
+        if (seen.empty())
+          return Failure{Fault::kAsset, "site `" + glow.site + "` is clear", options_.file};
+        add_file(below + "/" + described.glb, std::move(seen));
+        text.glows.push_back(
+            {described.name, asset_.joints[joint].name, asset_.joints[joint].slides, glow.from});
+        links.push_back(std::move(described));
+        return {};
+      }
+    }
+    return Failure{Fault::kAsset, "no site `" + glow.site + "`, which is to be shown",
+                   options_.file};
   }
 
   static std::string free_name(const std::string& wanted, const std::string& suffix,
@@ -333,6 +379,8 @@ class Conversion {
   MujocoMeshes meshes_;
   MujocoPictures pictures_;
   MujocoThing thing_;
+  std::deque<mjcf::Geom> glows_;  // sites, as what is seen
+  std::deque<MujocoLink> glow_links_;
   std::vector<std::vector<FeltPart>> felt_;  // by link
   mjcf::MassProperties mass_;                // of all, in the thing's frame
   MujocoAsset asset_;

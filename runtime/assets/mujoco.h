@@ -29,6 +29,13 @@ struct MujocoChange {
   std::string picture;             // file of a texture, beside the model's own; empty: no change
 };
 
+// What code shows of a fixture only while a joint stands so, as robosuite's `vis_site_names` does:
+// a site of the file becomes a link that is seen alone.
+struct MujocoGlow {
+  std::string site, joint;  // names in the file
+  double from = 0;          // m or rad, seen there and above
+};
+
 struct MujocoOptions {
   std::string file;         // the MJCF
   std::string name;         // identifier to declare it by; empty: from the file's stem
@@ -40,6 +47,7 @@ struct MujocoOptions {
   // Of the free joint that code gives an object whose file has none: N s/m and N m s/rad.
   double free_damping = 0;
   std::vector<MujocoChange> changes;
+  std::vector<MujocoGlow> glows;  // of a fixture
 };
 
 struct MujocoFile {
@@ -96,8 +104,8 @@ struct MujocoAsset {
 // asset's frame, so poses of a simulation's state are poses of ours. Bodies without joints are one
 // with what carries them. Fails (kAsset, where = FILE:LINE) as mjcf::read_model does, on a mesh or
 // texture that is missing or no mesh or picture, and on what cannot be made: two joints of one
-// body, a change of what is not there, a ball joint, a hinge that moves an object's part, nothing
-// that is felt.
+// body, a change or a glow of what is not there, a ball joint, a hinge that moves an object's part,
+// nothing that is felt.
 Result<MujocoAsset> convert_mujoco(const MujocoOptions& options);
 
 }  // namespace probe::assets

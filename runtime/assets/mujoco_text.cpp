@@ -140,14 +140,22 @@ std::string fixture_urdf(const std::string& name, const std::vector<DescribedLin
   }
   for (std::size_t i = 1; i < links.size(); ++i) {
     const DescribedLink& link = links[i];
+    const std::string& parent = links[static_cast<std::size_t>(link.link->parent)].name;
+    if (link.link->joint == nullptr) {
+      out += fmt::format(
+          "  <joint name=\"{}_joint\" type=\"fixed\">\n    <parent link=\"{}\"/><child "
+          "link=\"{}\"/>"
+          "\n  </joint>\n",
+          link.name, parent, link.name);
+      continue;
+    }
     const mjcf::Joint& joint = *link.link->joint;
     const MujocoJoint& made = joints[i - 1];
     const char* type = made.slides ? "prismatic" : joint.limited ? "revolute" : "continuous";
     out += fmt::format(
         "  <joint name=\"{}\" type=\"{}\">\n    <parent link=\"{}\"/><child link=\"{}\"/>{}<axis "
         "xyz=\"{}\"/>\n",
-        made.name, type, links[static_cast<std::size_t>(link.link->parent)].name, link.name,
-        origin(link.link->at), numbers(joint.axis));
+        made.name, type, parent, link.name, origin(link.link->at), numbers(joint.axis));
     // Nobody drives it: effort and velocity are asked for by the format and not read.
     if (joint.limited)
       out += fmt::format("    <limit lower=\"{}\" upper=\"{}\" effort=\"100\" velocity=\"10\"/>\n",
@@ -198,6 +206,9 @@ std::string fixture_text(const FixtureText& fixture, const std::vector<Described
   }
   for (const MujocoSite& site : sites)
     out += region(site, site.part.empty() ? fixture.name : site.part);
+  for (const GlowText& glow : fixture.glows)
+    out += fmt::format("  shown {} while {} >= {}\n", glow.link, glow.joint,
+                       glow.slides ? cm(glow.from) : decimals(glow.from, 9) + "rad");
   return out + "}\n";
 }
 

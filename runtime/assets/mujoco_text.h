@@ -22,23 +22,31 @@ struct DescribedLink {
   std::vector<FeltPart> felt;
   std::vector<std::string> meshes;  // file name by felt part; of boxes empty
 };
+// Behind those that move stand links that are fixed to theirs.
 std::string fixture_urdf(const std::string& name, const std::vector<DescribedLink>& links,
                          const std::vector<MujocoJoint>& joints);
 
 struct ObjectText {
   std::string name, folder, called;
   Vec3 low, high;
-  double density = 0;  // kg/m3
+  double density = 0;                        // kg/m3
   std::optional<mjcf::MassProperties> mass;  // in place of the density, in the thing's frame
   double friction = 1;
   double damping = 0;  // N s/m and N m s/rad
 };
 std::string object_text(const ObjectText& object, const std::vector<MujocoSite>& sites);
 
+struct GlowText {
+  std::string link, joint;  // as declared
+  bool slides = false;
+  double from = 0;
+};
+
 struct FixtureText {
   std::string name, urdf, called;
   double friction = 1;
   std::vector<const mjcf::Joint*> acting;  // by joint
+  std::vector<GlowText> glows;
 };
 std::string fixture_text(const FixtureText& fixture, const std::vector<DescribedLink>& links,
                          const std::vector<MujocoJoint>& joints,

@@ -18,6 +18,17 @@ double shown(const Json& joint, const char* key) {
   return std::nearbyint(joint[key].get<double>() * scale * 10) / 10 + 0.0;
 }
 
+// Where a link begins to be seen, in the unit of the joint that decides it.
+std::string position_text(const Json& fixture, const Json& shown_link) {
+  for (const Json& joint : fixture["joints"]) {
+    if (joint["joint"] != shown_link["joint"]) continue;
+    const Json at{{"moves", joint["moves"]}, {"at", shown_link["at"]}};
+    const bool slides = joint["moves"].get<std::string>() == "slides";
+    return fmt::format("{} {}", shown(at, "at"), slides ? "cm" : "deg");
+  }
+  return "";
+}
+
 }  // namespace
 
 Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
@@ -57,6 +68,13 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
            {"joint", part.joint == plan::kNone
                          ? Json()
                          : Json(plan.text(plan.joints(fixture)[part.joint].joint))}});
+    }
+    for (const plan::ShownRecord& shown : plan.shown(fixture)) {
+      const bool above = shown.side == static_cast<std::uint32_t>(plan::ShownSide::kAbove);
+      json["shown"].push_back({{"link", plan.text(shown.link)},
+                               {"joint", plan.text(plan.joints(fixture)[shown.joint].joint)},
+                               {"when", above ? ">=" : "<="},
+                               {"at", shown.at}});
     }
     all.push_back(std::move(json));
   }
@@ -121,6 +139,12 @@ std::vector<std::string> fixture_lines(const Json& task) {
     for (const Json& part : fixture["parts"])
       parts += (parts.empty() ? "" : ", ") + part["part"].get<std::string>();
     if (!parts.empty()) text += before + ("parts " + parts);
+    if (fixture.contains("shown")) {
+      for (const Json& shown : fixture["shown"])
+        text += fmt::format("; {} seen while {} {} {}", shown["link"].get<std::string>(),
+                            shown["joint"].get<std::string>(), shown["when"].get<std::string>(),
+                            position_text(fixture, shown));
+    }
     lines.push_back(std::move(text));
   }
   return lines;

@@ -266,6 +266,13 @@ void list_variations(std::string& out, const Plan& plan) {
       fmt::format_to(in, "  {} texture on {}: {} side {}\n", plan.text(s.name), cover.what,
                      plan.text(plan.assets()[cover.texture].path), cover.side);
   }
+  for (const FixtureRecord& f : plan.fixtures()) {
+    for (const ShownRecord& shown : plan.shown(f))
+      fmt::format_to(
+          in, "  {} shows {} while {} {} {}\n", plan.text(f.name), plan.text(shown.link),
+          plan.text(plan.joints(f)[shown.joint].joint),
+          shown.side == static_cast<std::uint32_t>(ShownSide::kAbove) ? ">=" : "<=", shown.at);
+  }
   for (const TaskRecord& k : plan.tasks()) {
     if (k.delay != 0) fmt::format_to(in, "  {} delay {}\n", plan.text(k.name), k.delay);
     for (const auto legs : moves_of(plan.tables(), k))

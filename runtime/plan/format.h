@@ -298,7 +298,8 @@ struct FixtureRecord {
   Slice parts;                       // kParts: all links with collision, in the URDF's order
   Slice meshes;                      // kList of kAssets, as a robot's
   Slice armatures;  // kReals: kg or kg m2 by joint, or none
-  std::uint64_t zero2[2] = {};
+  Slice shown;      // kShown
+  std::uint64_t zero2[1] = {};
 };
 static_assert(sizeof(FixtureRecord) == 128);
 
@@ -325,6 +326,17 @@ struct PartRecord {
   std::uint32_t declared = 0;   // 1: the text names it
 };
 static_assert(sizeof(PartRecord) == 32);
+
+enum class ShownSide : std::uint32_t { kAbove = 1, kBelow = 2 };
+
+// A link of a fixture that nothing can touch, seen only while a joint stands at a value or beyond.
+struct ShownRecord {
+  StringRef link;           // of the URDF
+  std::uint32_t joint = 0;  // of its fixture's
+  std::uint32_t side = 1;   // ShownSide
+  double at = 0;            // rad or m; there it is seen
+};
+static_assert(sizeof(ShownRecord) == 24);
 
 // A box in the frame of what it belongs to.
 struct RegionRecord {

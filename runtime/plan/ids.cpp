@@ -183,6 +183,11 @@ Sha256 IdHasher::fixture(const FixtureRecord& f) const {
     h.f64(joint.friction).f64(joint.damping).f64(joint.stiffness).f64(joint.rest);
   }
   if (f.armatures.count != 0) h.text("armature").f64s(slice_of(tables_.reals, f.armatures));
+  if (f.shown.count != 0) {
+    h.text("shown").u32(f.shown.count);
+    for (const ShownRecord& shown : slice_of(tables_.shown, f.shown))
+      h.text(tables_.text(shown.link)).u32(shown.joint).u32(shown.side).f64(shown.at);
+  }
   return h.finish();
 }
 

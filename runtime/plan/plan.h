@@ -70,6 +70,9 @@ class Plan {
     return object.damping.count == 0 ? nullptr : &tables_.dampings[object.damping.first];
   }
   // By joint; empty: none has any.
+  std::span<const ShownRecord> shown(const FixtureRecord& fixture) const {
+    return slice_of(tables_.shown, fixture.shown);
+  }
   std::span<const double> armatures(const FixtureRecord& fixture) const {
     return slice_of(tables_.reals, fixture.armatures);
   }

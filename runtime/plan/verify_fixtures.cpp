@@ -39,6 +39,7 @@ Status RecordCheck::check(const FixtureRecord& f) const {
     PROBE_TRY(check_not_negative(armature, "an armature"));
     PROBE_TRY(check_magnitude(armature, Magnitude::kArmature));
   }
+  PROBE_TRY(check_slice(f.shown, t.shown.size(), "SHOW"));
   return check_zero(f.zero2);
 }
 
@@ -74,6 +75,16 @@ Status RecordCheck::check(const PartRecord& p) const {
   PROBE_TRY(check_text(p.text));
   if (p.declared > 1) return fail(Rule::kZero, &p.declared, "a part is declared (1) or not (0)");
   return {};
+}
+
+Status RecordCheck::check(const ShownRecord& s) const {
+  PROBE_TRY(check_name(s.link, "the link that is shown"));
+  if (s.side != static_cast<std::uint32_t>(ShownSide::kAbove) &&
+      s.side != static_cast<std::uint32_t>(ShownSide::kBelow)) {
+    return fail(Rule::kShownSide, &s.side,
+                fmt::format("a link is shown above (1) or below (2), not {}", s.side));
+  }
+  return check_magnitude(s.at, Magnitude::kJointPosition);
 }
 
 Status RecordCheck::check(const RegionRecord& r) const {
@@ -141,8 +152,19 @@ class FixtureCheck : FieldCheck {
 
  private:
   Status owners() const {
-    std::uint64_t joints = 0, parts = 0;
+    std::uint64_t joints = 0, parts = 0, shown = 0;
     for (const FixtureRecord& f : t.fixtures) {
+      if (f.shown.count > 0 && f.shown.first != shown)
+        return fail(Rule::kShownOwned, &f.shown,
+                    fmt::format("what it shows begins at record {} of SHOW", shown));
+      shown += f.shown.count;
+      std::unordered_set<std::string_view> links;
+      for (const ShownRecord& one : slice_of(t.shown, f.shown)) {
+        PROBE_TRY(check_index(one.joint, f.joints.count, "FJNT"));
+        if (links.insert(t.text(one.link)).second) continue;
+        return fail(Rule::kShownOwned, &one.link,
+                    fmt::format("link `{}` is shown twice", t.text(one.link)));
+      }
       if ((f.joints.count > 0 && f.joints.first != joints) ||
           (f.parts.count > 0 && f.parts.first != parts)) {
         return fail(Rule::kFixtureOwned, &f.joints,
@@ -159,6 +181,8 @@ class FixtureCheck : FieldCheck {
       return fail(Rule::kFixtureOwned, &t.fixture_joints[joints], "a joint belongs to a fixture");
     if (parts != t.parts.size())
       return fail(Rule::kFixtureOwned, &t.parts[parts], "a part belongs to a fixture");
+    if (shown != t.shown.size())
+      return fail(Rule::kShownOwned, &t.shown[shown], "what is shown belongs to a fixture");
     return {};
   }
 

@@ -70,6 +70,7 @@ class RecordCheck : FieldCheck {
   Status check(const FixtureRecord& fixture) const;
   Status check(const FixtureJointRecord& joint) const;
   Status check(const PartRecord& part) const;
+  Status check(const ShownRecord& shown) const;
   Status check(const RegionRecord& region) const;
   Status check(const TurnedRecord& turned) const;
   Status check(const ViewRecord& view) const;

@@ -22,6 +22,11 @@ Fixture fixture_of(const plan::Plan& plan, const plan::FixtureRecord& record) {
     fixture.joints.push_back(std::move(spec));
     fixture.positions.push_back(joint.start);
   }
+  for (const plan::ShownRecord& shown : plan.shown(record)) {
+    fixture.shown.push_back({std::string(plan.text(shown.link)), shown.joint,
+                             shown.side == static_cast<std::uint32_t>(plan::ShownSide::kBelow),
+                             shown.at});
+  }
   return fixture;
 }
 
@@ -43,6 +48,13 @@ Status check_parts(const plan::Plan& plan, const plan::FixtureRecord& record,
       return Failure{Fault::kUrdf, what + " is part " + quoted(known->second->name), urdf};
     if (by_link.rbegin()->first != link)
       return Failure{Fault::kUrdf, what + " is not in the description's order", urdf};
+  }
+  for (const plan::ShownRecord& shown : plan.shown(record)) {
+    const int link = model.find_link(plan.text(shown.link));
+    const std::string what = "link " + quoted(shown.link) + ", which is seen at times,";
+    if (link < 0) return Failure{Fault::kUrdf, "no " + what, urdf};
+    if (model.links[static_cast<std::size_t>(link)].can_collide())
+      return Failure{Fault::kUrdf, what + " has collision: what is felt is always seen", urdf};
   }
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     if (!model.links[i].can_collide() || by_link.contains(static_cast<int>(i))) continue;

@@ -29,6 +29,7 @@ Result<std::vector<PlacedTree>> placed_trees(const plan::Plan& plan, const plan:
     std::vector<std::string> joints;
     for (const world::JointSpec& joint : loaded->fixture.joints) joints.push_back(joint.joint);
     PROBE_TRY(add(loaded->parts, joints, loaded->fixture.base));
+    trees.back().shown = &loaded->fixture.shown;
   }
   return trees;
 }

@@ -2,6 +2,7 @@
 // What is measured and what is drawn come from here, so they agree.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,12 +20,21 @@ struct PlacedTree {
   Pose base;                    // of the root link, world
   std::size_t first_joint = 0;  // of its joints among the world's
   std::vector<Pose> links;      // by URDF link in the root link's frame, as place() left them
+  const std::vector<ShownWhile>* shown = nullptr;  // of the assets; of a robot null
 
   // `all` are the positions of all the world's joints, or of more.
   std::span<const double> own(std::span<const double> all) const {
     return all.subspan(first_joint, tree.joint_count());
   }
   void place(std::span<const double> q) { tree.link_poses(own(q), links); }
+  // Whether a link is seen where the joints stand so.
+  bool shows(int link, std::span<const double> q) const {
+    if (shown == nullptr) return true;
+    const std::string& name = parts->model.links[static_cast<std::size_t>(link)].name;
+    return std::ranges::all_of(*shown, [&](const ShownWhile& one) {
+      return one.link != name || one.holds(own(q)[one.joint]);
+    });
+  }
   Pose link(int index) const { return base * links[static_cast<std::size_t>(index)]; }
 };
 

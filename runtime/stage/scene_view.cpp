@@ -271,18 +271,32 @@ void SceneView::place(std::span<const double> q, std::span<const Pose> objects) 
   PROBE_CHECK(objects.size() == objects_ && q.size() >= last.first_joint + last.tree.joint_count(),
               "one pose an object and one position a joint");
   poses_.assign(objects.begin(), objects.end());
+  hidden_.clear();
   for (PlacedTree& placed : trees_) {
     placed.place(q);
     for (const UrdfParts::LinkVisual& visual : placed.parts->visuals) {
+      if (!placed.shows(visual.link, q)) hidden_.push_back(poses_.size());
       poses_.push_back(placed.link(visual.link));
     }
   }
 }
 
+// What is not to be seen stands 900 km behind the eye: no ray reaches it, it throws no shadow, and
+// in a mirror it is smaller than the least that triangles are drawn by.
+void SceneView::hide_from(const render::Camera& camera) {
+  constexpr double kAway = 9e5;  // m
+  for (const std::size_t i : hidden_) {
+    poses_[i] = {camera.position - kAway * camera.forward_left_up.col(0), Quat::Identity()};
+  }
+}
+
 Result<render::FrameView> SceneView::look(Eye& eye, bool full) {
   if (eye.moving_mount >= 0) {
-    return eye.renderer->render_from(carried(eye.on_mount, robot().link(eye.moving_mount)), poses_);
+    const render::Camera camera = carried(eye.on_mount, robot().link(eye.moving_mount));
+    hide_from(camera);
+    return eye.renderer->render_from(camera, poses_);
   }
+  if (!hidden_.empty()) hide_from(carried(eye.on_mount, eye.mount));
   return full ? eye.renderer->render_full(poses_) : eye.renderer->render(poses_);
 }
 

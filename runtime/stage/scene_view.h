@@ -84,6 +84,7 @@ class SceneView {
   Result<Eye> open_eye(const plan::Plan& plan, const plan::SceneRecord& scene,
                        const plan::ViewRecord& record, ImageSize size);
   void place(std::span<const double> q, std::span<const Pose> objects);
+  void hide_from(const render::Camera& camera);
   Result<render::FrameView> look(Eye& eye, bool full);
   SceneView(std::shared_ptr<const SharedAssets> assets, std::vector<PlacedTree> trees)
       : assets_(std::move(assets)), trees_(std::move(trees)) {}
@@ -92,8 +93,9 @@ class SceneView {
   std::shared_ptr<const SharedAssets> assets_;
   std::vector<PlacedTree> trees_;
   std::size_t objects_ = 0;
-  std::vector<Pose> poses_;  // of the dynamic visuals: objects, then links tree by tree
-  render::SceneSpec seen_;   // the scene as every camera sees it
+  std::vector<Pose> poses_;          // of the dynamic visuals: objects, then links tree by tree
+  std::vector<std::size_t> hidden_;  // of these, what is not to be seen where joints stand
+  render::SceneSpec seen_;           // the scene as every camera sees it
   std::vector<Eye> eyes_;
   std::map<Sha256, std::vector<plan::Shake>> shakes_;  // by start, then eye; of tasks that have any
   std::optional<Sha256> begun_;

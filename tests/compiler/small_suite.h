@@ -64,9 +64,12 @@ inline std::string chest_urdf() {
   };
   return "<robot name=\"chest\">" + link("body", true) + link("drawer", true) + link("door", true) +
          link("lid", true) + link("bell", false) +
+         "<link name=\"light\"><visual><geometry><box size=\"0.01 0.01 0.01\"/></geometry>"
+         "</visual></link>" +
          joint("slide", "prismatic", "drawer", "lower=\"0\" upper=\"0.2\"") +
          joint("hinge", "revolute", "door", "lower=\"-1.5\" upper=\"0\"", "0 0 1") +
          joint("glue", "fixed", "lid", "lower=\"0\" upper=\"0\"") +
+         joint("wire", "fixed", "light", "lower=\"0\" upper=\"0\"") +
          joint("ring", "continuous", "bell", "lower=\"0\" upper=\"0\"") + "</robot>";
 }
 

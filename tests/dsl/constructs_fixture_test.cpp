@@ -60,6 +60,41 @@ TEST_CASE("fixture_st: inertia in a joint itself, in the joint's own unit") {
   CHECK(codes("slide armature -1kg").find("P0304") != std::string::npos);
 }
 
+TEST_CASE("fixture_st: a link without collision that is seen only while a joint stands so") {
+  const std::string chest(kChest);
+  const auto with = [&](const std::string& shown) {
+    return chest + "fixture glows like chest { " + shown +
+           " }\nscene two like room { fixture glows }\ntask t like red_on_tray { scene two }\n";
+  };
+  const Built built(with("shown light while slide >= 5cm; joint slide friction 1N start 1cm"));
+  const plan::Plan& plan = built.plan();
+  REQUIRE(plan.fixtures().size() == 1);
+  const auto shown = plan.shown(plan.fixtures()[0]);
+  REQUIRE(shown.size() == 1);
+  CHECK(plan.text(shown[0].link) == "light");
+  CHECK(plan.text(plan.joints(plan.fixtures()[0])[shown[0].joint].joint) == "slide");
+  CHECK(shown[0].side == static_cast<std::uint32_t>(plan::ShownSide::kAbove));
+  CHECK(shown[0].at == 0.05);
+  // A copy may show it otherwise; what it is shown by is part of the scene.
+  const Built below(with("shown light while hinge <= -10deg; joint slide friction 1N start 1cm"));
+  CHECK(below.plan().shown(below.plan().fixtures()[0])[0].side ==
+        static_cast<std::uint32_t>(plan::ShownSide::kBelow));
+  const auto start = [](const Built& of) { return of.plan().episodes(of.task("t"))[0].start_id; };
+  CHECK(start(built) != start(below));
+
+  const auto codes = [&](const std::string& said) {
+    return analyze_with_suite(with(said))->codes();
+  };
+  CHECK(codes("shown drawer while slide >= 5cm").find("P1301") != std::string::npos);
+  CHECK(codes("shown bell while slide >= 5cm").find("P1301") != std::string::npos);
+  CHECK(codes("shown lamp while slide >= 5cm").find("P0201") != std::string::npos);
+  CHECK(codes("shown light while glue >= 5cm").find("P0201") != std::string::npos);
+  CHECK(codes("shown light while slide >= 5deg").find("P0302") != std::string::npos);
+  CHECK(codes("shown light while slide > 5cm").find("P0101") != std::string::npos);
+  CHECK(codes("shown light while slide >= 5cm; shown light while slide <= 1cm").find("P0203") !=
+        std::string::npos);
+}
+
 TEST_CASE("box: two corners, the second above the first on every axis") {
   const auto a = clean(
       "object tub like tray { region inside box (-2cm, -1cm, 0cm) .. (2cm, 1cm, 30mm); name "

@@ -36,6 +36,25 @@ inline std::vector<Defect> fixture_defects() {
        }},
       {"PART", "two parts are called",
        [](Records& r, Writer&) { r.parts[1].name = r.parts[0].name; }},
+      {"SHOW", "above (1) or below (2), not 3",
+       [](Records& r, Writer& w) {
+         r.shown = {{w.text("glow"), 1, 3, 0.5}};
+         r.fixtures[0].shown = {0, 1};
+       }},
+      {"SHOW", "FJNT",
+       [](Records& r, Writer& w) {
+         r.shown = {{w.text("glow"), 2, 1, 0.5}};
+         r.fixtures[0].shown = {0, 1};
+       }},
+      {"SHOW", "link `glow` is shown twice",
+       [](Records& r, Writer& w) {
+         r.shown = {{w.text("glow"), 1, 1, 0.5}, {w.text("glow"), 0, 1, 0.1}};
+         r.fixtures[0].shown = {0, 2};
+       }},
+      {"SHOW", "what is shown belongs to a fixture",
+       [](Records& r, Writer& w) {
+         r.shown = {{w.text("glow"), 1, 1, 0.5}};
+       }},
       {"PART", "FJNT", [](Records& r, Writer&) { r.parts[1].joint = 2; }},
       {"REGN", "not 4", [](Records& r, Writer&) { r.regions[0].kind = 4; }},
       {"REGN", "PART", [](Records& r, Writer&) { r.regions[0].index = 9; }},
@@ -66,8 +85,7 @@ inline std::vector<Defect> fixture_defects() {
        }},
       {"TASK", "is listed twice",
        [](Records& r, Writer& w) {
-         r.roles = {{w.text("drawers"), 6, kDrawerBody, 1, 0, 0},
-                    {{}, 7, kDrawerBody, 1, 0, 0}};
+         r.roles = {{w.text("drawers"), 6, kDrawerBody, 1, 0, 0}, {{}, 7, kDrawerBody, 1, 0, 0}};
          r.tasks[0].roles = {0, 2};
        }},
       {"ROLE", "a role has a name of its own",

@@ -290,6 +290,31 @@ TEST_CASE("a fixture is a URDF with a link a joint, its joints, parts and region
   CHECK(made.joints[0].slides);
 }
 
+TEST_CASE("a site that code shows by a joint is a link of its own, seen alone") {
+  const MjcfFolder folder;
+  MujocoOptions options;
+  options.file = folder.write("cupboard.xml", kCupboard);
+  options.glows = {{"on_shelf", "drawer", -0.1}};
+  const MujocoAsset made = converted(options);
+  CHECK(made.declaration.find("  shown on_shelf_glow while drawer >= -10cm\n}\n") !=
+        std::string::npos);
+  for (const MujocoFile& file : made.files) folder.write("assets/" + file.path, file.bytes);
+  const auto urdf = robot::load_urdf(folder.path("assets/fixtures/cupboard/cupboard.urdf"));
+  REQUIRE_MESSAGE(urdf.ok(), (urdf ? std::string() : to_text(urdf.failure())));
+  const int link = urdf->find_link("on_shelf_glow");
+  REQUIRE(link >= 0);
+  CHECK_FALSE(urdf->links[static_cast<std::size_t>(link)].can_collide());
+  CHECK(urdf->links[static_cast<std::size_t>(link)].visuals.size() == 1);
+  for (const auto& [site, joint, said] :
+       {std::tuple{"nowhere", "drawer", "no site `nowhere`, which is to be shown"},
+        {"on_shelf", "nothing", "no joint `nothing`, which is to show a site"}}) {
+    options.glows = {{site, joint, 0}};
+    const auto refused = convert_mujoco(options);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.failure().message == said);
+  }
+}
+
 // Corners by position, with their texture coordinates.
 template <typename Use>
 void each_corner(const scene::Mesh& mesh, const Use& use) {
