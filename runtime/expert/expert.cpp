@@ -63,6 +63,7 @@ class Expert final : public policy::Policy {
   void end(const policy::EpisodeEnd&) override {
     if (!started_ || !options_.close || !lack_.empty()) return;
     // The last one keeps still when it is done.
+    if (goes_under_ && under_.keeps()) return;
     const bool is_over = solution_.empty() || (skill_ + 1 == solution_.size() && !moves_joint())
                              ? hand_.is_over()
                              : skill_ >= solution_.size();
@@ -288,6 +289,11 @@ class Expert final : public policy::Policy {
     errand.close = options_.close;
     errand.lifts = skill.kind == Kind::kPick;
     errand.pushes = skill.kind == Kind::kPush;
+    // A hand whose fingers turn goes where it points, which is seldom straight down.
+    const bool leans = !reach_->hand().shape.turning.empty() &&
+                       (skill.kind == Kind::kPick || skill.kind == Kind::kPut);
+    goes_under_ = leans && under_.begin(scene, view, skill, *reach_, ready_, !options_.close);
+    if (goes_under_) return true;
     const bool needs_spot = options_.close && skill.kind == Kind::kPut && goes_to_spot(skill);
     if (needs_spot)
       errand.spots = find_put_spots(scene, view, skill, *reach_, is_shared(solution_, skill_));

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "runtime/base/trig.h"
+#include "runtime/expert/depths.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -120,6 +122,10 @@ robot::HandShape set_to(const GraspProblem& problem, double width) {
   const double opening = std::min(0.5 * width + kBesideSource, hand.opening_half);
   hand.outside_half -= hand.opening_half - opening;
   hand.opening_half = opening;
+  if (!hand.turning.empty()) {
+    const auto outer = robot::fingers_at(hand.turning, hand.openness_for(opening)).outer;
+    hand.outside_half = *std::ranges::max_element(outer);
+  }
   return hand;
 }
 
@@ -161,7 +167,7 @@ void add_rim_grasps(const GraspProblem& problem, std::vector<Grasp>& out) {
             grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
             grasp.width = wall.width();
             grasp.off_center = (xy - source.center).norm();
-            grasp.open = set.opening_half / g.opening_half;
+            grasp.open = g.openness_for(set.opening_half);
             grasp.clearance =
                 clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
             if (grasp.clearance < kNearest) continue;
@@ -204,6 +210,7 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
       std::clamp(0.25 * (source.top - problem.surface), 0.0015, problem.tip_margin);
   const double lowest = problem.surface + g.tip_below + margin;
   const double z = std::max(lowest, source.top - g.palm_above + 0.004);
+  const Depths depths(problem, lowest);
   std::vector<Grasp> out;
   const bool too_high = z - g.tip_below > source.top - 0.003;  // the fingers would close above it
   for (const double half_turn : too_high ? std::vector<double>{} : yaws_for(source)) {
@@ -213,15 +220,17 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
       const Slab slab{d.across, middle + along, g.finger_half};
       const Extent extent = extent_in_slab(source.parts, slab, d.close);
       if (extent.empty() || extent.width() > 2 * (g.opening_half - kSideMargin)) continue;
+      const auto deep = g.turning.empty() ? std::optional(z) : depths.around(slab, d.close, extent);
+      if (!deep) continue;
       const Vec2 xy = 0.5 * (extent.lower + extent.upper) * d.close + slab.at * d.across;
       const robot::HandShape set = problem.narrow ? set_to(problem, extent.width()) : g;
       for (const double turn : {0.0, kPi}) {
         Grasp grasp;
         grasp.yaw = wrapped(half_turn + turn);
-        grasp.tcp = top_down({xy.x(), xy.y(), z}, grasp.yaw);
+        grasp.tcp = top_down({xy.x(), xy.y(), *deep}, grasp.yaw);
         grasp.width = extent.width();
         grasp.off_center = along;
-        grasp.open = set.opening_half / g.opening_half;
+        grasp.open = g.openness_for(set.opening_half);
         grasp.clearance = clearance_of(problem, set, directions_of(grasp.yaw), grasp.tcp.position);
         if (grasp.clearance < kNearest) continue;
         grasp.cost = 20 * grasp.width + 50 * std::abs(along) +

@@ -33,6 +33,8 @@ constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half wi
 constexpr int kLooks = 5;                                      // at the way of the part
 
 double closed_half(const robot::HandShape& hand) {
+  if (!hand.turning.empty())
+    return robot::outer_face(hand.turning.front(), hand.palm_above, hand.tip_below - kTipUnder);
   const double thick = hand.outside_at(hand.tip_below - kTipUnder) - hand.opening_half;
   return std::max(thick, 0.004) + 0.5 * hand.thinnest;
 }
@@ -139,7 +141,7 @@ class Search {
     for (const double beside : kBeside) {
       const double parted = half + beside;
       if (parted > p_.hand.opening_half) continue;
-      hold.open = parted / p_.hand.opening_half;
+      hold.open = p_.hand.openness_for(parted);
       const std::size_t before = found_.size();
       // Where there is less room on one side, the fingers stand to the other.
       for (const double aside : {0.0, 0.5, -0.5}) {
@@ -255,7 +257,7 @@ Pose tool_at(const Hold& hold, const Pose& part, const robot::HandShape& hand, d
 }
 
 HandBalls balls_of(const Hold& hold, const robot::HandShape& hand) {
-  return hand_balls(hand, hold.pushes() ? 0 : hold.open * hand.opening_half);
+  return hand_balls(hand, hold.pushes() ? 0 : hand.gap_at(hold.open));
 }
 
 Hold refined(const HoldProblem& problem, const Hold& hold, double openness) {

@@ -165,7 +165,7 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
       moving.push_back(tool_at(hold, moved_part(*seen.joint, pose, by), problem.hand));
     }
     const std::vector<Ball> balls = balls_of(hold, problem.hand).all();
-    const double widest = std::max(arm.openness, hold.open) * problem.hand.opening_half;
+    const double widest = problem.hand.widest_on_way(arm.openness, hold.open);
     auto way = free_way(around, arm.tcp, before, hand_balls(problem.hand, widest).all());
     const FreeLine last{&around, balls};
     if (!way || !last.is_free(before, at)) {
@@ -211,7 +211,7 @@ void JointSkill::way_back(const policy::Privileged& view, const Arm& arm, const 
 // What cannot be planned from here may be from where the tool began.
 void JointSkill::way_home(const policy::Privileged& view, const Arm& arm, const Reach& reach) {
   const robot::HandShape& hand = reach.hand().shape;
-  const std::vector<Ball> balls = hand_balls(hand, arm.openness * hand.opening_half).all();
+  const std::vector<Ball> balls = hand_balls(hand, hand.gap_at(arm.openness)).all();
   const auto way = free_way(surroundings_of(view), arm.tcp, ready_, balls);
   way_ = way ? *way : std::vector<Pose>{ready_};
 }

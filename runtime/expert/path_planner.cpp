@@ -166,14 +166,37 @@ Ball ball(double x, double y, double z, double radius) { return {{x, y, z}, radi
 
 constexpr int kFingerBalls = 8;  // the first of gripper_balls: two fingers, two edges, two heights
 
+namespace {
+
+// Fingers that turn are aslant: their inner and their outer faces, at the tips and half way up.
+void add_turned(const robot::HandShape& g, double parted, std::vector<Ball>* out) {
+  const robot::FingersAt at = robot::fingers_at(g.turning, g.openness_for(parted));
+  for (const double side : {-1.0, 1.0}) {
+    for (const bool is_inner : {true, false}) {
+      for (const double share : {0.1, 0.5}) {
+        const double x = at.tip_below - share * (at.tip_below + g.palm_above);
+        const double inner = robot::inner_face(at, g.palm_above, x);
+        const double outer = robot::outer_face(at, g.palm_above, x);
+        const double r = std::min(0.5 * (outer - inner), g.finger_half);
+        const double y = is_inner ? inner + r : outer - r;
+        out->push_back(ball(std::min(x, at.tip_below - r), side * y, 0, r));
+      }
+    }
+  }
+}
+
+}  // namespace
+
 std::vector<Ball> gripper_balls(const robot::HandShape& g, double parted) {
   std::vector<Ball> out;
+  if (!g.turning.empty()) add_turned(g, parted, &out);
   // Half a finger's thickness less 1 mm, m; not beyond half its width.
   const double thick =
       std::clamp(0.5 * (g.outside_half - g.opening_half) - 0.001, 0.0, g.finger_half);
   const double middle = parted + thick + 0.001;
   const double side = g.finger_half - thick;
   for (const double y : {-middle, middle}) {
+    if (!g.turning.empty()) break;
     for (const double z : {-side, side}) {
       out.push_back(ball(g.tip_below - thick, y, z, thick));
       out.push_back(ball(-0.4 * g.palm_above, y, z, thick));
@@ -256,7 +279,7 @@ std::optional<PlannedPath> plan_approach(const Scene& scene, const Reach& reach,
   move.recent = &recent;
   move.goal = pick.grasp.tcp;
   move.guides = *guides;
-  move.balls = gripper_balls(gripper, pick.grasp.open * gripper.opening_half);
+  move.balls = gripper_balls(gripper, gripper.gap_at(pick.grasp.open));
   move.obstacles = obstacles_of(scene, true);
   if (scene.source.whole.size() >= 3 && !pick.grasp.rim) {
     move.narrow.floor = scene.surface - 1;

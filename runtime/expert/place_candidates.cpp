@@ -72,7 +72,7 @@ std::vector<double> turns_of(const Scene& scene, bool on_mark) {
 
 // Wide, and where that may be too much as little as lets go.
 std::vector<double> ways_to_open(const Scene& scene, bool on_mark) {
-  const double little = scene.openness + kLetsGo / scene.hand.opening_half;
+  const double little = scene.hand.opened_by(scene.openness, kLetsGo);
   if (!on_mark || little > 0.9) return {1};
   return {1, little};
 }
@@ -103,7 +103,7 @@ std::vector<Place> place_candidates(const Scene& scene, const Pose& tool, bool o
   const double rise = scene.target.top + kTouch - scene.source.bottom;
   std::vector<Place> out;
   for (const double openness : ways_to_open(scene, on_mark)) {
-    std::vector<Ball> balls = gripper_balls(gripper, openness * gripper.opening_half);
+    std::vector<Ball> balls = gripper_balls(gripper, gripper.gap_at(openness));
     balls.insert(balls.end(), held.begin(), held.end());
     for (const double turn : turns_of(scene, on_mark)) {
       Place place;

@@ -33,6 +33,16 @@ constexpr std::size_t kPutMostHolds = 60, kMostWays = 4;
 constexpr int kPutTurns = 8;  // of the source, where it comes from above
 constexpr double kWidthCost = 10,
                  kLeverCost = 3;  // of a m between the fingers; of a m off the middle
+// Of hands whose fingers turn, whose arms do not come to all from straight above.
+constexpr double kPutLeantUpright = 0.52;          // 59 degrees between closing line and way down
+constexpr std::array kPutLeans = {0.2, 0.4, 0.6};  // tangents of how far they point away
+constexpr std::array kPutDeeper = {0.048, 0.042, 0.037, 0.032, 0.026,
+                                   0.020, 0.014, 0.008, 0.0};  // m: farther down than others
+constexpr double kPutPress = 0.004;  // m that fingers come into what they close on
+constexpr double kDeepCost = 30;     // of a m that they do not come down
+constexpr double kAslantCost =
+    3;  // of the sine of their line's slope: of what they press it slides
+constexpr std::array kLiftNearer = {0.0, 0.05, 0.10};  // m towards the base on the way up
 constexpr double kPutNearBase = 0.6, kPutStretchCost = 8;
 
 // A hold of the source, as it lies.
@@ -40,6 +50,7 @@ struct Held {
   Pose tool;  // base frame
   double open = 1;
   double cost = 0;
+  double before = kPutBefore;  // m, from where the hand comes to it
 };
 
 // Where it goes, and from where it comes there.
@@ -73,10 +84,12 @@ class PutSearch {
   std::vector<Held> find_holds() const {
     std::vector<Held> out;
     const std::vector<Vec3> ways = ways_to(source_.pose);
+    const bool turns = !hand().turning.empty();
     for (std::size_t s = 0; s < source_.solids.size(); ++s) {
-      for (const FingersAround& way :
-           fingers_around(source_.solids[s], source_.pose, ways, hand(), kPutUpright))
-        add(s, way, out);
+      for (const FingersAround& way : fingers_around(source_.solids[s], source_.pose, ways, hand(),
+                                                     turns ? kPutLeantUpright : kPutUpright))
+        turns ? add_turned(s, way, out) : add(s, way, out);
+      if (turns) add_leant(s, out);
     }
     const auto was_tried = [&](const Held& held) {
       return std::ranges::any_of(p_.failed, [&](const Pose& old) {
@@ -96,7 +109,7 @@ class PutSearch {
     for (const double beside : kPutBeside) {
       const double parted = way.half + beside;
       if (parted > hand().opening_half) continue;
-      held.open = parted / hand().opening_half;
+      held.open = hand().openness_for(parted);
       const HandBalls balls = hand_balls(hand(), parted);
       double room = rest_.clearance(held.tool, balls.all(), kPutRoomyEnough);
       if (room < kPutRoom) continue;
@@ -112,6 +125,48 @@ class PutSearch {
                   0.1 * std::abs(way.share) + 80 * (kPutRoomyEnough - room) +
                   kPutStretchCost * std::max(0.0, way.at.head<2>().norm() - kPutNearBase);
       out.push_back(held);
+      return;
+    }
+  }
+
+  // Away from the base, in fingers whose line is level.
+  void add_leant(std::size_t solid, std::vector<Held>& out) const {
+    const Vec2 off = p_.scene->source.center.normalized();
+    Mat3 axes;
+    axes << off.x(), -off.y(), 0, off.y(), off.x(), 0, 0, 0, 1;
+    const Pose turned{source_.pose.position, Quat(axes)};
+    const Pose into = turned.inverse() * source_.pose;
+    std::vector<Vec3> vertices;
+    for (const Vec3& v : p_.view->objects[std::size_t(p_.object)].parts[solid])
+      vertices.push_back(into.apply(v));
+    std::vector<Vec3> ways;
+    for (const double lean : kPutLeans)
+      ways.push_back(Vec3(lean * off.x(), lean * off.y(), -1).normalized());
+    for (const FingersAround& way :
+         fingers_around(Solid::around(vertices), turned, ways, hand(), kPutLeantUpright))
+      add_turned(solid, way, out);
+  }
+
+  // Fingers that turn are aslant: as far down as they come, and where they close without pressing
+  // anything but their ends into the source.
+  void add_turned(std::size_t solid, const FingersAround& way, std::vector<Held>& out) const {
+    const HandBalls closed = hand_balls(hand(), way.half);
+    for (const double deeper : kPutDeeper) {
+      FingersAround down = way;
+      down.at += deeper * way.down;
+      const Pose tool{down.at, tool_frame(way.down, way.closing)};
+      if (rest_.clearance(tool, closed.all(), kPutRoom) < kPutRoom) continue;
+      const Pose into = source_.pose.inverse() * tool;
+      const bool fits = std::ranges::all_of(closed.fingers, [&](const Ball& ball) {
+        return source_.solids[solid].distance(into.apply(ball.center)) > ball.radius - kPutPress;
+      });
+      if (!fits) continue;
+      const std::size_t before = out.size();
+      add(solid, down, out);
+      if (out.size() == before) continue;
+      out.back().cost +=
+          kDeepCost * (kPutDeeper.front() - deeper) + kAslantCost * std::abs(way.closing.z());
+      out.back().before += deeper;
       return;
     }
   }
@@ -205,6 +260,13 @@ class PutSearch {
     Pose up = held.tool;
     up.position.z() += kPutRise;
     if (is_free(held.tool, up)) out.push_back({up});
+    for (const double nearer : kLiftNearer) {
+      if (nearer == 0 || hand().turning.empty()) continue;
+      Pose back = up;
+      const double far = up.position.head<2>().norm();
+      back.position.head<2>() *= std::max(0.0, 1 - nearer / std::max(far, 1e-9));
+      if (is_free(held.tool, back)) out.push_back({back});
+    }
     if (!is_covered(*p_.scene)) return out;
     const std::size_t straight = out.size();
     Pose off = held.tool;
@@ -225,14 +287,14 @@ class PutSearch {
 
   std::optional<PutPlan> with(const Held& held) const {
     const robot::HandShape& shape = hand();
-    std::vector<Ball> carried = hand_balls(shape, held.open * shape.opening_half).all();
+    std::vector<Ball> carried = hand_balls(shape, shape.gap_at(held.open)).all();
     const std::vector<Ball> hand_only = carried;
     const std::vector<Ball> source = held_balls(*p_.scene, held.tool);
     carried.insert(carried.end(), source.begin(), source.end());
     Pose before = held.tool;
-    before.position -= kPutBefore * (held.tool.rotation * Vec3::UnitX());
+    before.position -= held.before * (held.tool.rotation * Vec3::UnitX());
     if (!FreeLine{&rest_, hand_only}.is_free(before, held.tool)) return std::nullopt;
-    const double widest = std::max(p_.scene->openness, held.open) * shape.opening_half;
+    const double widest = shape.widest_on_way(p_.scene->openness, held.open);
     const auto to = free_way(all_, p_.scene->tcp, before, hand_balls(shape, widest).all());
     if (!to) return std::nullopt;
     PutPlan plan;
@@ -244,6 +306,7 @@ class PutSearch {
     if (!there) return std::nullopt;
     const auto outs = ways_out(held, carried);
     if (outs.empty()) return std::nullopt;
+    if (p_.lifts) return lifted(plan, outs, there->back());
     const std::vector<WayIn> ins = ways_in(held, carried);
     for (std::size_t i = 0; i < std::min(ins.size(), kMostWays); ++i) {
       const Pose mouth = ins[i].mouth * plan.hold, end = ins[i].source * plan.hold;
@@ -267,6 +330,17 @@ class PutSearch {
         plan.put = ins[i].source;
         return plan;
       }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<PutPlan> lifted(PutPlan plan, const std::vector<std::vector<Pose>>& outs,
+                                const JointVector& q) const {
+    for (const std::vector<Pose>& out : outs) {
+      if (!p_.reach->follow(std::span(q.data(), std::size_t(q.size())), out)) continue;
+      plan.carry = out;
+      plan.put = p_.scene->source_pose;
+      return plan;
     }
     return std::nullopt;
   }

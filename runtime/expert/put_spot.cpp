@@ -432,8 +432,21 @@ double PutPlace::depth_along(const Vec2& way) const {
 std::vector<PutPlace> find_put_places(const Scene& scene, const policy::Privileged& view,
                                       const policy::Skill& skill) {
   std::vector<PutPlace> out;
-  if (!skill.region) return out;
   const Spots spots(scene, view, skill, false);
+  if (skill.place == policy::Skill::Place::kBeside) {
+    for (const Wanted& wanted : spots.wanted()) {
+      const Vec2 at = wanted.at.head<2>();
+      PutPlace place;
+      place.top = spots.support(at, wanted.top);
+      place.at = {at.x(), at.y(), place.top};
+      const double room = spots.room(at, place.top, Eigen::Matrix2d::Identity());
+      if (room < kTightest) continue;
+      place.cost = 4 * wanted.away + 30 * (kRoomiest - room);
+      out.push_back(place);
+    }
+    return out;
+  }
+  if (!skill.region) return out;
   const policy::Skill::Box& box = *skill.region;
   const Pose pose = spots.owner() * box.turned;
   PutPlace place;

@@ -35,7 +35,7 @@ struct PutPlace {
   double depth_along(const Vec2& way) const;
 };
 
-// All of a region's grid that carry what stands there.
+// All of a region's grid that carry what stands there; of what is put beside something, around it.
 std::vector<PutPlace> find_put_places(const Scene& scene, const policy::Privileged& view,
                                       const policy::Skill& skill);
 

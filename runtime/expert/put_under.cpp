@@ -30,16 +30,19 @@ bool all_of_them_touch(const Scene& s) {
 }  // namespace
 
 bool PutUnder::begin(const Scene& scene, const policy::Privileged& view, const policy::Skill& skill,
-                     const Reach& reach, const Pose& ready) {
+                     const Reach& reach, const Pose& ready, bool only_reaches) {
   *this = {};
+  only_reaches_ = only_reaches;
   skill_ = skill;
   ready_ = ready;
   return plan(scene, view, reach);
 }
 
 bool PutUnder::plan(const Scene& scene, const policy::Privileged& view, const Reach& reach) {
-  const std::vector<PutPlace> places = find_put_places(scene, view, skill_);
-  plan_ = plan_put({&scene, &view, &reach, skill_.object, places, failed_});
+  const bool lifts = skill_.kind == policy::Skill::Kind::kPick || only_reaches_;
+  std::vector<PutPlace> places;
+  if (!lifts) places = find_put_places(scene, view, skill_);
+  plan_ = plan_put({&scene, &view, &reach, skill_.object, places, failed_, lifts});
   if (!plan_) return false;
   enter(Phase::kGo);
   way_.begin(plan_->to_hold, kHoldNear, kBeforeHold);
@@ -66,7 +69,7 @@ bool PutUnder::holds(const Scene& s) const {
 void PutUnder::begin_leave(const Scene& scene, const policy::Privileged& view, const Reach& reach) {
   std::vector<Pose> way = plan_->leave;
   const robot::HandShape& hand = reach.hand().shape;
-  const std::vector<Ball> balls = hand_balls(hand, scene.openness * hand.opening_half).all();
+  const std::vector<Ball> balls = hand_balls(hand, hand.gap_at(scene.openness)).all();
   if (const auto home = free_way(surroundings_of(view), way.back(), ready_, balls))
     way.insert(way.end(), home->begin(), home->end());
   way_.begin(std::move(way), kHomeNear, kHomeNear);
@@ -80,7 +83,7 @@ void PutUnder::advance(const Scene& s, const policy::Privileged& view, const Rea
         case ToolWay::State::kGoing:
           return;
         case ToolWay::State::kThere:
-          return enter(Phase::kGrip);
+          return enter(only_reaches_ ? Phase::kKeep : Phase::kGrip);
         case ToolWay::State::kStuck:
           return start_over(s, view, reach, "the hand does not come to its hold");
       }
@@ -97,7 +100,10 @@ void PutUnder::advance(const Scene& s, const policy::Privileged& view, const Rea
     case Phase::kCarry:
       if (!holds(s)) return start_over(s, view, reach, "it slipped in the hand");
       if (way_.advance(s.tcp) == ToolWay::State::kGoing) return;
-      return enter(Phase::kLower);
+      return enter(plan_->leave.empty() ? Phase::kKeep : Phase::kLower);
+    case Phase::kKeep:
+      if (!only_reaches_ && !holds(s)) start_over(s, view, reach, "it slipped in the hand");
+      return;
     case Phase::kLower: {
       const bool stopped = steps_ >= 3 && last_.position.z() - s.tcp.position.z() < 0.0008;
       if (stopped || steps_ >= kLongestLower) enter(Phase::kOpen);
@@ -127,6 +133,8 @@ policy::Action PutUnder::command(const Scene& s, Servo& servo) const {
     case Phase::kCarry:
       return servo.toward(way_.goal(), arm, kClosedGripper,
                           way_.is_last() ? kUnderNearPace : kUnderHeldPace);
+    case Phase::kKeep:
+      return servo.hold(arm, only_reaches_ ? kOpenGripper : kClosedGripper);
     case Phase::kLower: {
       Pose goal = plan_->carry.back();
       goal.position.z() = std::min(goal.position.z(), s.tcp.position.z()) - kDown;

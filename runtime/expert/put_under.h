@@ -1,5 +1,6 @@
 // The skill that a PutPlan is for: to the hold, close, carry along the way, let down, open, back
-// off, home. A hold that is lost is planned anew.
+// off, home; or to the hold, close, up, and it stays in the hand. A hold that is lost is planned
+// anew.
 #pragma once
 
 #include <optional>
@@ -17,7 +18,7 @@ class PutUnder {
   // False where there is no plan: nothing is begun. `ready` is where the tool goes in the end, so
   // that the arm is not left twisted.
   bool begin(const Scene& scene, const policy::Privileged& view, const policy::Skill& skill,
-             const Reach& reach, const Pose& ready);
+             const Reach& reach, const Pose& ready, bool only_reaches = false);
 
   // One decision; nothing once it is over.
   std::optional<policy::Action> act(const Scene& scene, const policy::Privileged& view,
@@ -25,9 +26,11 @@ class PutUnder {
 
   // Why it was not done; empty else.
   const std::string& lack() const { return lack_; }
+  // What shall only be picked up is in the hand, or what is only gone to is there.
+  bool keeps() const { return phase_ == Phase::kKeep; }
 
  private:
-  enum class Phase { kGo, kGrip, kCarry, kLower, kOpen, kLeave, kOver };
+  enum class Phase { kGo, kGrip, kCarry, kKeep, kLower, kOpen, kLeave, kOver };
 
   bool plan(const Scene& scene, const policy::Privileged& view, const Reach& reach);
   void enter(Phase phase);
@@ -46,7 +49,7 @@ class PutUnder {
   std::vector<Pose> failed_;  // holds, in the source's frame
   ToolWay way_;
   Pose taken_, last_;  // of the source in the tool's frame; of the tool
-  bool is_done_ = false;
+  bool is_done_ = false, only_reaches_ = false;
   std::string lack_;
 };
 

@@ -17,6 +17,10 @@ namespace {
 constexpr double kLargestShift = 0.10;  // m
 constexpr double kLargestTurn = 0.60;   // rad
 
+// Of a law that goes on from where things are measured.
+constexpr double kClosingStep = -0.15;   // of the gripper's number, in a control step
+constexpr double kFingersStand = 0.006;  // of openness in a control step: less is standing
+
 constexpr int kBeforeTrust =
     3;  // control steps until the drives are known well enough to doubt the target
 constexpr double kBelieved = 0.5;  // of what the target seems to be off
@@ -45,6 +49,8 @@ void Servo::begin(const robot::Chain& chain, const Arm& arm, const robot::Law& l
   target_ = arm.tcp;
   knows_target_ = false;
   last_shift_ = 0;
+  last_openness_ = arm.openness;
+  was_closing_ = false;
   learnt_ = 0;
   tracker_.reset();
   from_measured_ = std::holds_alternative<robot::EeDeltaInterpolated>(law);
@@ -113,13 +119,26 @@ policy::Action Servo::hold(const Arm& arm, double gripper) {
 }
 
 // The law goes from where the tool is, and its gripper goes on by as much as it is told.
-policy::Action Servo::go_to(const Pose& pose, const Arm& arm, double gripper) const {
+policy::Action Servo::go_to(const Pose& pose, const Arm& arm, double gripper) {
   const Pose next = stepped(arm.tcp, pose, kLargestShift, kLargestTurn);
   const Vec3 shift = next.position - arm.tcp.position;
   const Vec3 turn = robot::to_rotation_vector(next.rotation * arm.tcp.rotation.conjugate());
-  const bool whole = gripper <= kClosedGripper || gripper >= kOpenGripper;
-  const double grip = whole ? gripper : robot::openness_of_command(gripper) - arm.openness;
+  const double grip = grip_step(gripper, arm.openness);
   return {shift.x(), shift.y(), shift.z(), turn.x(), turn.y(), turn.z(), grip};
+}
+
+// Fingers that come at full speed to what they close on press with their drives' limits, where
+// they hold no place and swing with what is between them. Once they stand, the goal that they were
+// told last is far enough ahead to hold.
+double Servo::grip_step(double gripper, double openness) {
+  const double closed_by = last_openness_ - openness;
+  last_openness_ = openness;
+  const bool closes = gripper <= kClosedGripper;
+  const bool stands = closes && was_closing_ && std::abs(closed_by) < kFingersStand;
+  was_closing_ = closes;
+  if (closes) return stands ? 0 : kClosingStep;
+  if (gripper >= kOpenGripper) return gripper;
+  return robot::openness_of_command(gripper) - openness;
 }
 
 // The pose whose joint positions, as targets, bring the joints to those of `next` within the step.

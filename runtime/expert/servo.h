@@ -71,7 +71,8 @@ class Servo {
   Pose ahead_of(std::span<const double> next, const Arm& arm) const;
   void correct_target(const Arm& arm);
   policy::Action aim(const Pose& goal, const Arm& arm, double gripper);
-  policy::Action go_to(const Pose& pose, const Arm& arm, double gripper) const;
+  policy::Action go_to(const Pose& pose, const Arm& arm, double gripper);
+  double grip_step(double gripper, double openness);
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);
 
   const robot::Chain* chain_ = nullptr;
@@ -82,6 +83,8 @@ class Servo {
   Joints joint_target_{}, joints_before_{};
   bool knows_target_ = false;  // joint_target_ is what the controller's inverse kinematics found
   double last_shift_ = 0;
+  double last_openness_ = 1;  // under `ee_delta_interpolated`, at the last decision
+  bool was_closing_ = false;
   int learnt_ = 0;  // free control steps seen
 };
 

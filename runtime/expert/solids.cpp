@@ -128,9 +128,34 @@ Surroundings surroundings_of(const policy::Privileged& view) {
   return out;
 }
 
+namespace {
+
+// Inner and outer faces of both fingers where they are at that opening, from tips to palm.
+std::vector<Ball> turned_fingers(const robot::HandShape& hand, double parted) {
+  std::vector<Ball> out;
+  const robot::FingersAt at = robot::fingers_at(hand.turning, hand.openness_for(parted));
+  for (int i = 0; i < kSections; ++i) {
+    const double x = at.tip_below - (at.tip_below + hand.palm_above) * i / (kSections - 1.0);
+    const double inner = robot::inner_face(at, hand.palm_above, x);
+    const double outer = robot::outer_face(at, hand.palm_above, x);
+    const double r = std::clamp(0.5 * (outer - inner), 0.002, hand.finger_half);
+    const double side = hand.finger_half - r, center = std::min(x, at.tip_below - r);
+    for (const double y : {inner + r, outer - r}) {
+      for (const double z : {-side, side}) {
+        out.push_back({{center, y, z}, r});
+        out.push_back({{center, -y, z}, r});
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 HandBalls hand_balls(const robot::HandShape& hand, double parted) {
   HandBalls out;
-  for (int i = 0; i < kSections; ++i) {
+  if (!hand.turning.empty()) out.fingers = turned_fingers(hand, parted);
+  for (int i = 0; i < kSections && hand.turning.empty(); ++i) {
     const double x = hand.tip_below - (hand.tip_below + hand.palm_above) * i / (kSections - 1.0);
     const double thick = std::max(0.004, hand.outside_at(x) - hand.opening_half);
     const double r = std::min(0.5 * thick, hand.finger_half);

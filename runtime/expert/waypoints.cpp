@@ -185,7 +185,7 @@ std::optional<Pick> plan_pick(const Scene& scene, const Reach& reach, bool place
     bool crowded, narrow;
   };
   for (const auto& [crowded, narrow] : {Room{true, false}, Room{true, true}, Room{false, false}}) {
-    if (narrow && !scene.low_ways) continue;
+    if (narrow && !scene.low_ways && scene.hand.turning.empty()) continue;
     if (!crowded) problem.others.clear();
     problem.narrow = narrow;
     std::vector<Grasp> grasps = grasp_candidates(problem);

@@ -12,6 +12,7 @@
 #include "runtime/base/geometry.h"
 #include "runtime/robot/control.h"
 #include "runtime/robot/laws.h"
+#include "runtime/robot/turning_fingers.h"
 #include "runtime/robot/urdf.h"
 
 namespace probe::robot {
@@ -26,7 +27,7 @@ struct Finger {
 // point, x is where the hand points (down in a grasp from above), the fingers close along y, z is
 // along their width.
 struct HandShape {
-  double tip_below = 0;                  // fingertips past the tool centre point
+  double tip_below = 0;                  // fingertips past the tool centre point, at most
   double palm_above = 0;                 // underside of what holds the fingers
   double finger_half = 0;                // half the width of a finger, along z
   double opening_half = 0;               // inner faces from the middle, fingers open, mid-height
@@ -36,6 +37,28 @@ struct HandShape {
   double thinnest = 0;                   // the least width that the closed fingers hold
   // Outer faces again, from the fingertips up to the palm at even heights; all 0: as outside_half.
   std::array<double, 6> tapered{};
+
+  // Of fingers that turn, where they are; `opening_half` and `outside_half` are then those of the
+  // widest opening at which their tips still reach far enough. Empty: they slide.
+  TurningFingers turning{};
+
+  // How far the inner faces are from the middle at an openness of the gripper, and back.
+  double gap_at(double openness) const {
+    return turning.empty() ? openness * opening_half : fingers_at(turning, openness).gap_half;
+  }
+  double openness_for(double gap_half) const {
+    return turning.empty() ? gap_half / opening_half : openness_of_gap(turning, gap_half);
+  }
+  // Inner faces on a way that begins at one openness and ends at another. Fingers that turn are
+  // brought to the latter first: wide open they stand out far to both sides.
+  double widest_on_way(double from, double to) const {
+    return gap_at(turning.empty() ? std::max(from, to) : to);
+  }
+  // The openness at which the inner faces are `more` farther from the middle.
+  double opened_by(double openness, double more) const {
+    return turning.empty() ? openness + more / opening_half
+                           : openness_of_gap(turning, gap_at(openness) + more);
+  }
 
   // Outer faces from the middle at a height, x from the tool centre point towards the tips.
   double outside_at(double x) const {

@@ -15,6 +15,11 @@
 
 namespace probe::stage {
 namespace {
+// m/N: how far things sink into fingers whose paths begin anew where they are measured, each
+// control step, and so press with nothing for a moment. In the engine that law was made for, what
+// sank in goes on pressing then; between fingers that give way to nothing all would fall out of the
+// hand.
+constexpr double kFingersGive = 1e-6;
 
 // The longer third phase of settling, if something still moves faster than this (m/s, rad/s, summed
 // over objects and joints of fixtures), and how long it is (s). From the reference's reset.
@@ -99,12 +104,14 @@ world::WorldSpec EpisodeWorld::spec_at(const Arrangement& at, bool with_robot_li
   arm.by_efforts = with_robot_links && controller_.kind().reads == robot::Reads::kDynamics;
   arm.joints = drives_;
   arm.positions = arm_;
+  const bool begins_anew = controller_.kind().kind == robot::ControlKind::kEeDeltaInterpolated;
   for (std::size_t k = 0; with_robot_links && k < bodies_.robot_links; ++k) {
     const auto link = static_cast<std::size_t>(bodies_.links[k].link);
     const bool finger = k < robot_.fingers.size();
     arm.links.push_back({parts.model.links[link].name, parts.shapes[link],
                          finger ? record_.finger_friction : record_.link_friction,
-                         finger ? record_.finger_patch : 0});
+                         finger ? record_.finger_patch : 0,
+                         finger && begins_anew ? kFingersGive : 0});
   }
   std::span<const double> left = at.fixture_joints;
   for (const LoadedFixture* loaded : assets_->fixtures(task_.scene)) {

@@ -9,8 +9,9 @@
 
 namespace probe::stage {
 
-// Of a robot with two fingers that open along one line, one to each side of the tool centre point;
-// nullopt for any other. `robot` has its fingers, its control and its joints.
+// Of a robot with two fingers that open along one line, one to each side of the tool centre point,
+// or turn and face one another somewhere on their way; nullopt for any other. `robot` has its
+// fingers, its control and its joints.
 std::optional<robot::Hand> hand_of_shapes(const robot::Robot& robot, const UrdfParts& parts);
 
 }  // namespace probe::stage

@@ -33,7 +33,7 @@ Box whole_box(const scene::CollisionShape& shape) {
 }  // namespace
 
 Collider make_collider(std::shared_ptr<const scene::CollisionShape> shape, double friction,
-                       double patch) {
+                       double patch, double give) {
   Collider c;
   c.local = whole_box(*shape);
   c.part_boxes.resize(shape->parts.size());
@@ -41,6 +41,7 @@ Collider make_collider(std::shared_ptr<const scene::CollisionShape> shape, doubl
   c.shape = std::move(shape);
   c.friction = friction;
   c.patch = patch;
+  c.give = give;
   return c;
 }
 

@@ -9,7 +9,7 @@
 namespace probe::world {
 
 Collider make_collider(std::shared_ptr<const scene::CollisionShape> shape, double friction,
-                       double patch);
+                       double patch, double give = 0);
 
 // Of the links that move, at the tree's last update and the world's speeds `u`.
 void place_links(const Articulation& articulation, const JointArray& u,

@@ -151,6 +151,7 @@ struct Search {
       rows.friction = pair.friction;
       rows.patch = b == nullptr ? a.patch : std::max(a.patch, b->patch);
       rows.torsion = rows.patch > 0;
+      rows.give = (a.give + (b == nullptr ? 0 : b->give)) / (parameters.dt * parameters.dt);
       rows.rows[kNormal].impulse = point.normal_impulse;
       rows.rows[kTangent1].impulse = c.t1.dot(point.friction_impulse);
       rows.rows[kTangent2].impulse = c.t2.dot(point.friction_impulse);

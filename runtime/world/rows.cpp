@@ -130,6 +130,8 @@ void build_rows(const Parameters& parameters, const std::vector<Articulation>& a
             ? c.gap / parameters.dt
             : -std::min(parameters.push,
                         parameters.beta * std::max(0.0, -c.gap - parameters.slop) / parameters.dt);
+    // Into what is soft things sink as far as the force says: gap + give force = 0 afterwards.
+    if (rows.give > 0) rows.bias = c.gap / parameters.dt;
     rows.columns = nullptr;
     if ((c.path_a | c.path_b) == 0) continue;
     rows.columns = &problem->columns[used];
@@ -200,6 +202,11 @@ void couple_joints(const JointResponse& response, Problem* problem) {
       for (size_t r = 0; r < (rows.torsion ? kRows : kTwist); ++r) {
         couple(response, lanes, problem->joints, c.body_k[r], column, &rows.rows[r]);
         if (column != nullptr) column += 2 * lanes;
+      }
+      if (rows.give > 0) {
+        Row& normal = rows.rows[kNormal];
+        normal.k += rows.give;
+        normal.inverse_k = 1.0 / normal.k;
       }
     }
   });

@@ -53,6 +53,7 @@ struct ArticulationSpec {
     std::shared_ptr<const scene::CollisionShape> shape;
     double friction = 1;
     double patch = 0;  // torsional patch radius, m
+    double give = 0;   // m/N: how far what touches it sinks in under a force; 0: not at all
   };
   std::vector<Link> links;
   // Whether its links hit each other and the base. Pairs that cannot or must not are left out: see

@@ -116,6 +116,7 @@ struct Collider {
   std::shared_ptr<const scene::CollisionShape> shape;
   double friction = 1;
   double patch = 0;                      // m
+  double give = 0;                       // m/N
   int body = -1;                         // index of a free body, -1 for a link or a fixture
   int articulation = -1;                 // of a link
   int moving_link = -1;                  // of its tree: the one that carries the link; -1: the base
@@ -193,6 +194,7 @@ struct ContactRows {
   double bias = 0;                                // m/s, of the normal row
   double friction = 0;                            // coefficient
   double patch = 0;                               // m
+  double give = 0;                                // 1/kg, of the normal row: of what is soft
   double grip = 0;                                // N s, friction's bound while bounds are held
   double inverse_mass_a = 0, inverse_mass_b = 0;  // 1/kg
 };

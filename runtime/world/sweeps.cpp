@@ -102,7 +102,8 @@ inline double sweep_contact(ContactRows* contact, const Sides& s, double* u, Lan
   ContactRows& c = *contact;
   Row& normal = c.rows[kNormal];
   const double v = row_speed(c, kNormal, s, u, lanes);
-  const double next = std::max(0.0, normal.impulse - (v + c.bias) * normal.inverse_k);
+  const double miss = v + c.bias + c.give * normal.impulse;
+  const double next = std::max(0.0, normal.impulse - miss * normal.inverse_k);
   const double delta = next - normal.impulse;
   double change = std::fabs(delta) * normal.k;
   if (delta != 0) {

@@ -196,7 +196,9 @@ Status Builder::add_links(const ArticulationSpec& articulation, Articulation* ma
     if (!(link.friction >= 0) || !(link.patch >= 0) || !std::isfinite(link.friction + link.patch)) {
       return fail("link `" + link.name + "` has negative or non-finite friction");
     }
-    Collider c = make_collider(link.shape, link.friction, link.patch);
+    if (!(link.give >= 0) || !std::isfinite(link.give))
+      return fail("link `" + link.name + "` gives way by a number that is negative or not finite");
+    Collider c = make_collider(link.shape, link.friction, link.patch, link.give);
     const JointTree::Carrier& carrier = made->tree->carrier(index);
     c.articulation = static_cast<int>(stepper_.articulations.size());
     c.moving_link = carrier.moving;

@@ -87,6 +87,33 @@ TEST_CASE("what others add to the actions is found out and made up for") {
   CHECK(robot::pose_error(table.observe(20).proprioception.tcp_in_base, goal).position < 0.001);
 }
 
+TEST_CASE(
+    "where the gripper goes on from where it is it closes by steps, and rests once it stands") {
+  const auto model = robot::load_urdf(test::kUrdf);
+  REQUIRE(model.ok());
+  const auto chain = robot::Chain::create(*model, "ee_gripper_link", test::kArm);
+  REQUIRE(chain.ok());
+  const std::vector<double> joints(chain->joint_count(), 0.1);
+  const auto arm = [&](double openness) { return Arm{chain->pose(joints), joints, openness}; };
+  Servo servo;
+  servo.begin(*chain, arm(1), robot::EeDeltaInterpolated{});
+  const auto grip = [&](double openness, double command) {
+    return servo.hold(arm(openness), command)[6];
+  };
+  CHECK(grip(1, kOpenGripper) == kOpenGripper);
+  // Somewhere between: as far as it is from there.
+  CHECK(grip(1, 0) == doctest::Approx(-0.5));
+  const double step = grip(0.5, kClosedGripper);
+  CHECK(step < 0);
+  CHECK(step > -0.5);
+  CHECK(grip(0.4, kClosedGripper) == step);
+  CHECK(grip(0.4, kClosedGripper) == 0);
+  CHECK(grip(0.39, kClosedGripper) == step);  // what was held gave way
+  // It moves on after it was opened, though it stands.
+  CHECK(grip(0.39, kOpenGripper) == kOpenGripper);
+  CHECK(grip(0.39, kClosedGripper) == step);
+}
+
 TEST_CASE("a step towards a pose keeps to its limits and ends at the pose") {
   const Pose from;
   const Pose to{Vec3(0.1, 0, 0), robot::from_rotation_vector({0, 0, 1})};

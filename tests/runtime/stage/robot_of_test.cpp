@@ -85,6 +85,36 @@ TEST_CASE("the hand that was measured once is the one that its shapes show") {
   CHECK(std::abs(a.palm_back - b.palm_back) < 4e-3);
 }
 
+// Gaps between the fingertips' collision meshes at positions of the released joints, m.
+TEST_CASE("fingers that turn are measured where they are at each opening") {
+  const plan::Plan plan = test::compile_suite("google.probe");
+  const std::uint32_t tasks[] = {plan.find_task("pick_standing").value()};
+  const auto assets = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+  REQUIRE(assets.ok());
+  const plan::RobotRecord& record =
+      plan.robots()[plan.scenes()[plan.tasks()[tasks[0]].scene].robot];
+  const auto robot = robot_of(plan, record, *(*assets)->robot(record.urdf));
+  REQUIRE_MESSAGE(robot.ok(), (robot.ok() ? "" : to_text(robot.failure())));
+  REQUIRE(robot->hand.has_value());
+  const robot::HandShape& hand = robot->hand->shape;
+  REQUIRE(!hand.turning.empty());
+  struct Gap {
+    double q, wide;
+  };
+  for (const Gap& gap : {Gap{0.4, 0.108}, Gap{0.8, 0.055}, Gap{1.0, 0.014}}) {
+    const double openness = 1 - gap.q / 1.3001;
+    CHECK(2 * hand.gap_at(openness) == doctest::Approx(gap.wide).epsilon(0.1));
+    CHECK(hand.openness_for(0.5 * gap.wide) == doctest::Approx(openness).epsilon(0.05));
+  }
+  CHECK(hand.gap_at(0) == 0);  // closed empty they meet before their limits
+  for (std::size_t i = 1; i < hand.turning.size(); ++i)
+    CHECK(hand.turning[i].gap_half > hand.turning[i - 1].gap_half);
+  // Palm and tips are where the tool centre point's link says: it is between the tips.
+  CHECK(hand.tip_below > 0);
+  CHECK(hand.tip_below < 0.02);
+  CHECK(hand.palm_above > 0.05);
+}
+
 TEST_CASE("a robot without fingers has an arm and no hand") {
   const Set set;
   plan::RobotRecord bare = set.record;

@@ -433,6 +433,68 @@ TEST_CASE("turning fingers that press with their full force hold a box without c
   }
 }
 
+// How far a box sinks in the hand in 1.2 s where fingers that hold it up press anew from nothing
+// three times a second, as their drives' targets then do: from where they are, by 8.3 t^3.
+double sinks(double give) {
+  Robot r = mobile();
+  const double half = 0.025;
+  r.spec.surface_z = 0.3;
+  r.spec.sleeping = false;
+  for (auto& link : r.spec.articulations[0].links) {
+    if (link.name.starts_with("finger")) link.give = give;
+  }
+  {
+    const auto bare = make(&r);
+    Vec3 spot = tip(*bare);
+    spot.z() = r.spec.surface_z + half;
+    r.spec.articulations[0].positions = reach(r, state(*bare), spot + Vec3(0, 0, 0.005));
+    r.spec.bodies.push_back(
+        {"box",
+         std::make_shared<scene::CollisionShape>(scene::make_box_shape(Vec3::Constant(half))), 160,
+         0.5, Pose{spot, Quat::Identity()}});
+  }
+  const auto world = make(&r);
+  std::vector<double> target = state(*world);
+  target[9] = target[10] = 0.2;
+  world->set_targets(target);
+  run(world.get(), 300);
+  const std::vector<double> up = reach(r, state(*world), tip(*world) + Vec3(0, 0, 0.05));
+  std::copy_n(up.begin(), r.arm, target.begin());
+  world->set_targets(target);
+  run(world.get(), 500);
+  const auto height = [&] {
+    return world->body(0).pose.position.z() - world->frame_pose("tip").position.z();
+  };
+  const double before = height();
+  for (int k = 0; k < 600; ++k) {
+    const double t = 0.002 * (k % 167 + 1);
+    if (k % 167 == 0) target[9] = world->joints()[9], target[10] = world->joints()[10];
+    std::vector<double> now = target;
+    for (const std::size_t finger : {9, 10}) now[finger] += 8.3 * t * t * t;
+    world->set_targets(now);
+    run(world.get(), 1);
+  }
+  return before - height();
+}
+
+TEST_CASE("what sank into fingers that give way is held where they press anew from nothing") {
+  const double soft = sinks(1e-6), hard = sinks(0);
+  MESSAGE("sinks ", soft * 1e3, " mm in fingers that give way, ", hard * 1e3, " mm in others");
+  CHECK(std::fabs(soft) < 2e-4);
+  CHECK(hard > 2e-3);
+}
+
+TEST_CASE("fingers that give way by a number that is no length a force are refused") {
+  for (const double give : {-1e-6, std::nan("")}) {
+    Robot r = mobile();
+    r.spec.articulations[0].links.back().give = give;
+    r.spec.articulations[0].model = &r.model;
+    const auto refused = World::create(r.spec);
+    REQUIRE(!refused.ok());
+    CHECK(to_text(refused.failure()).find("finger_right") != std::string::npos);
+  }
+}
+
 TEST_CASE("a follower's limits bind its leader, and limits that contradict are refused") {
   std::string text = geared_arm();
   const auto change = [&](const std::string& from, const std::string& to) {
