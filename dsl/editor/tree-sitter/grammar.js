@@ -88,15 +88,12 @@ const statements = {
     urdf: ($) => $.string,
     tcp: ($) => seq($.identifier, optional(seq('points', $.signed_axis))),
     fingers: ($) => choice('none', list($, $.finger)),
-    control: ($) =>
-        seq(field('law', $.identifier), $.quantity, optional(block($, $._control_statement))),
+    control: ($) => seq(field('law', $.identifier), $.quantity, optional(block($, $._control_statement))),
     reach: ($) => range($, $.quantity),
-    drive: ($) =>
-        seq(names($), maybe($, 'stiffness'), maybe($, 'damping'), maybe($, 'limit'),
-            maybe($, 'friction'), maybe($, 'armature')),
-    grip: ($) =>
-        seq(range($, $.quantity), maybe($, 'friction'), maybe($, 'patch'), maybe($, 'pace'),
-            maybe($, 'stiffness'), maybe($, 'limit')),
+    drive: ($) => seq(names($), maybe($, 'stiffness'), maybe($, 'damping'), maybe($, 'limit'),
+                      maybe($, 'friction'), maybe($, 'armature')),
+    grip: ($) => seq(range($, $.quantity), maybe($, 'friction'), maybe($, 'patch'), maybe($, 'pace'),
+                     maybe($, 'stiffness'), maybe($, 'limit')),
   },
   control: {
     kp: numbers,
@@ -115,19 +112,15 @@ const statements = {
     mount: ($) => seq($.path, 'at', $.point, choice('look', 'quat'), $.point),
     image: ($) => seq($.integer, 'x', $.integer, optional(seq('samples', $.integer))),
     lens: quantities,
-    sensor: ($) => choice(
-        'none',
-        repeat1(choice(
-            seq(choice('noise', 'blur', 'exposure', 'dropped'), $.quantity), 'mirrored',
-            seq('patch', range($, $.point))))),
+    sensor: ($) => choice('none', repeat1(choice(
+        seq(choice('noise', 'blur', 'exposure', 'dropped'), $.quantity), 'mirrored', seq('patch', range($, $.point))))),
     jitter: ($) => seq($.quantity, $.quantity),
   },
   light: {
     ambient: ($) => seq($.quantity, optional(seq('occlusion', $.integer))),
     sun: ($) => seq($.point, 'power', $.quantity, maybe($, 'specular'), optional('shadow')),
-    spot: ($) =>
-        seq('at', $.point, 'along', $.point, lamp($), maybe($, 'cutoff'), maybe($, 'exponent'),
-            optional(seq('fade', $.point))),
+    spot: ($) => seq('at', $.point, 'along', $.point, lamp($), maybe($, 'cutoff'), maybe($, 'exponent'),
+                     optional(seq('fade', $.point))),
     headlight: lamp,
     shading: () => 'vertex',
     color: ($) => $.point,
@@ -136,17 +129,13 @@ const statements = {
     urdf: ($) => $.string,
     at: ($) => seq($.point, optional($.pose)),
     friction: ($) => $.quantity,
-    joint: ($) =>
-        seq($.identifier, maybe($, 'friction'), maybe($, 'damping'),
-            optional(seq('stiffness', $.quantity, 'at', $.quantity)), maybe($, 'armature'),
-            maybe($, 'start'), optional('stay')),
-    part: ($) =>
-        seq(named($), 'link', field('link', $.identifier), optional(seq('name', $.string)),
-            optional(block($, $._part_statement))),
+    joint: ($) => seq($.identifier, maybe($, 'friction'), maybe($, 'damping'),
+                      optional(seq('stiffness', $.quantity, 'at', $.quantity)), maybe($, 'armature'),
+                      maybe($, 'start'), optional('stay')),
+    part: ($) => seq(named($), 'link', field('link', $.identifier), optional(seq('name', $.string)),
+                     optional(block($, $._part_statement))),
     region: ($) => seq(region($, true), optional(seq('name', $.string))),
-    shown: ($) =>
-        seq(field('link', $.identifier), 'while', field('joint', $.identifier), choice('>=', '<='),
-            $.quantity),
+    shown: ($) => seq(field('link', $.identifier), 'while', field('joint', $.identifier), choice('>=', '<='), $.quantity),
   },
   part: described,
   scene: {
@@ -159,22 +148,16 @@ const statements = {
     backdrop: ($) => seq($.string, optional('stands')),
     camera: ($) => list($, $.view),
     light: ($) => $.identifier,
-    physics: ($) =>
-        seq($.quantity, 'friction', $.quantity, maybe($, 'air'), maybe($, 'viscosity'),
-            optional(seq('window', 'step'))),
+    physics: ($) => seq($.quantity, 'friction', $.quantity, maybe($, 'air'), maybe($, 'viscosity'),
+                        optional(seq('window', 'step'))),
   },
   layout: {
-    cells: ($) =>
-        seq(named($), on($, '='), 'grid', $.integer, 'x', $.integer, 'at', $.point, 'spread',
-            points($)),
-    place: ($) =>
-        seq(names($),
-            choice(
-                seq('at', $.point), seq('on', $.thing),
-                seq('in',
-                    choice(
-                        seq(choice('distinct', 'remaining'), field('cells', $.identifier)),
-                        alias($._thing_in, $.thing))))),
+    cells: ($) => seq(named($), on($, '='), 'grid', $.integer, 'x', $.integer, 'at', $.point, 'spread', points($)),
+    place: ($) => seq(names($), choice(
+        seq('at', $.point),
+        seq('on', $.thing),
+        seq('in', choice(seq(choice('distinct', 'remaining'), field('cells', $.identifier)),
+                         alias($._thing_in, $.thing))))),
     orient: ($) => choice(seq('by', 'rest'), seq(nameOr($, 'by'), poses($))),
     starts: ($) => $.string,
     jitter: ($) => $.quantity,
@@ -195,19 +178,17 @@ const statements = {
         'none', list($, $.thing), seq(alias($._none_thing, $.thing), on($, ','), list($, $.thing)),
         seq(count($), 'of', parens(names($)), 'seed', count($))),
     say: ($) => choice($.identifier, $.template),
-    then: ($) => choice(
-        'none', seq('say', choice($.identifier, $.template), 'when', field('when', $._expression))),
+    then: ($) => choice('none', seq('say', choice($.identifier, $.template), 'when', field('when', $._expression))),
     refer: ($) => seq(field('role', $.identifier), 'as', field('phrase', $.identifier)),
     pose: ($) => seq($.identifier, poses($)),
     start: ($) => jointStart($, $.quantity, $.identifier),
     horizon: ($) => seq(count($), 'steps'),
     idle: ($) => seq(count($), 'steps'),
     delay: ($) => choice(seq(count($), 'steps'), $.quantity, $.identifier),
-    moves: ($) =>
-        seq($.identifier,
-            choice(
-                'none', seq('along', points($), 'at', bound($), optional(choice('loop', 'once'))),
-                seq('around', $.point, 'at', bound($)))),
+    moves: ($) => seq($.identifier, choice(
+        'none',
+        seq('along', points($), 'at', bound($), optional(choice('loop', 'once'))),
+        seq('around', $.point, 'at', bound($)))),
     solution: ($) => choice('none', braced($, several($, $._solution_statement))),
     set: ($) => $.metric,
   },
@@ -223,8 +204,7 @@ const statements = {
   questions: {
     choice: ($) => question($, field('answer', $.identifier), 'among', $.pool),
     yesno: ($) => question($, field('answer', choice($.seen_answer, $._expression))),
-    number: ($) =>
-        question($, 'count', parens(seq(field('attribute', $.identifier), 'of', $.identifier))),
+    number: ($) => question($, 'count', parens(seq(field('attribute', $.identifier), 'of', $.identifier))),
     point: ($) => question($, field('answer', $.identifier)),
     free: ($) => question($, 'mentions', parens(seq($.identifier, on($, ','), $.identifier))),
   },
