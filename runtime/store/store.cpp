@@ -214,6 +214,24 @@ Result<std::vector<std::string>> tasks_in_order(Database& database) {
   return names;
 }
 
+// While it lives, all that is read is as it was at the first reading.
+class Moment {
+ public:
+  static Result<Moment> begin(Database& database) {
+    PROBE_TRY(database.execute("begin"));
+    return Moment(database);
+  }
+  Moment(Moment&& other) noexcept : database_(std::exchange(other.database_, nullptr)) {}
+  Moment& operator=(Moment&&) = delete;
+  ~Moment() {
+    if (database_ != nullptr) (void)database_->execute("rollback");  // nothing was written
+  }
+
+ private:
+  explicit Moment(Database& database) : database_(&database) {}
+  Database* database_;
+};
+
 // Rows of a folder's database, some hundred at a time.
 class RowReader {
  public:
@@ -227,6 +245,8 @@ class RowReader {
   Result<std::vector<ResultRow>> read(const std::string& task, std::int64_t episode,
                                       std::int64_t seed) {
     std::vector<ResultRow> rows;
+    // A row and what its policy said of it are of one moment, whoever writes meanwhile.
+    PROBE_ASSIGN(const Moment moment, Moment::begin(database_));
     Statement select(database_, select_.c_str());
     select.bind(task).bind(episode).bind(seed);
     while (select.next()) {

@@ -57,6 +57,37 @@ TEST_CASE("rows of more than one piece come in the plan's order, each once") {
   CHECK(stopped.failure().message == "enough");
 }
 
+TEST_CASE("remarks go to their rows in every piece that is read") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  {
+    auto store = Store::open(dir, record_of(), plan_bytes());
+    REQUIRE(store.ok());
+    ResultRow row = row_of(0);
+    row.remark = "makes the table";
+    REQUIRE(store_episode(**store, row).ok());
+  }
+  change_database(dir,
+                  "delete from episodes; delete from remarks; "
+                  "with recursive n(i) as (select 0 union all select i + 1 from n where i < 2999) "
+                  "insert into episodes select 'a', i / 7, i % 7, 1, '', '', 'p', '[]', 1, null, "
+                  "'', '', '', '', '', null, null from n; "
+                  "insert into remarks select task, episode, seed, 'said of ' || episode || '/' || "
+                  "seed from episodes where (episode + seed) % 3 = 0");
+  std::size_t count = 0, said = 0;
+  REQUIRE(for_each_row(dir, [&](ResultRow&& row) -> Status {
+            ++count;
+            const bool is_said = (row.episode + row.seed) % 3 == 0;
+            said += is_said;
+            const std::string wanted =
+                "said of " + std::to_string(row.episode) + "/" + std::to_string(row.seed);
+            CHECK(row.remark == (is_said ? std::optional(wanted) : std::nullopt));
+            return {};
+          }).ok());
+  CHECK(count == 3000);
+  CHECK(said > 900);
+}
+
 TEST_CASE("names that are no texts are refused, not read for ever") {
   TemporaryFolder folder;
   const std::string dir = folder / "run";

@@ -10,9 +10,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <thread>
 
 #include "runtime/plan/plan.h"
 #include "runtime/store/stored_trace.h"
@@ -72,6 +74,35 @@ TEST_CASE("what a policy says of an episode is kept with its row, and goes when 
   REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
   REQUIRE(store_episode(**store, row_of(1)).ok());
   CHECK_FALSE(read_results(dir)->at(1).remark);
+}
+
+TEST_CASE("a row and its remark are of one moment, while another process writes both anew") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  const auto put = [&](Store& store, int turn) {
+    ResultRow row = row_of(0);
+    row.steps = 1 + turn % 2;
+    if (turn % 2 == 1) row.remark = "the second";
+    REQUIRE(store_episode(store, row).ok());
+  };
+  auto store = Store::open(dir, record_of(), plan_bytes());
+  REQUIRE(store.ok());
+  put(**store, 0);
+  std::atomic<bool> is_over = false;
+  std::thread writer([&] {
+    for (int turn = 1; turn < 200; ++turn) put(**store, turn);
+    is_over = true;
+  });
+  int read = 0, torn = 0;
+  while (!is_over || read == 0) {
+    const auto rows = read_results(dir);
+    if (!rows) continue;  // busy
+    ++read;
+    torn += (rows->at(0).steps == 2) != rows->at(0).remark.has_value();
+  }
+  writer.join();
+  CHECK(read > 10);
+  CHECK(torn == 0);
 }
 
 TEST_CASE("rows say idle steps, late actions and joints where a task has them") {
