@@ -12,16 +12,20 @@ progress_said=$SECONDS
 progress_programs() { echo "$ran $programs ${passed:+$passed cases passed, $failed failed}"; }
 # run_program PROGRAM NAME: in its own folder; its log beside it is shown if anything failed.
 run_program() {
-  local program=$1 name=$2 folder log summary p f status=0
+  local program=$1 name=$2 folder status=0
   folder=$(dirname "$program")
-  log="$folder/$(basename "$program").log"
-  with_progress "testing, $name" progress_programs "$log" env -C "$folder" "$program" || status=$?
+  with_progress "testing, $name" progress_programs "$folder/$(basename "$program").log" env -C "$folder" "$program" || status=$?
+  count_program "$program" "$name" "$status"
+}
+# count_program PROGRAM NAME STATUS: of one that ran, by its log.
+count_program() {
+  local program=$1 name=$2 status=$3 log=$1.log summary p f
   ran=$((ran + 1)) progress_said=$SECONDS
   # doctest's summary: "[doctest] test cases: 7 | 7 passed | 0 failed | 0 skipped"
   summary=$(grep -a 'test cases:' "$log" | tail -n 1 | sed 's/\x1b\[[0-9;]*m//g' || true)
   p=$(sed -n 's/.* \([0-9]*\) passed.*/\1/p' <<<"$summary")
   f=$(sed -n 's/.* \([0-9]*\) failed.*/\1/p' <<<"$summary")
-  if [ -z "$p" ] || [ -z "$f" ] || { [ "$status" -ne 0 ] && [ "$f" -eq 0 ]; }; then
+  if [ -z "$p" ] || [ -z "$f" ] || { [ "$status" != 0 ] && [ "$f" -eq 0 ]; }; then
     p=${p:-0} f=$(( ${f:-0} + 1 ))
     echo "$name ended with status $status and without a clean summary" >>"$log"
   fi
@@ -31,8 +35,24 @@ run_program() {
   if [ "$f" -ne 0 ]; then cat "$log"; fi
 }
 programs=$(find "$root/build/tests" -maxdepth 1 -name 'test_*' -type f -executable | wc -l)
+# Those that drive a browser or time-outs of servers are alone with the machine, the others share it, as many as it has cores.
+alone=" test_runtime_lsp test_runtime_report test_runtime_servers test_runtime_servers_protocols test_runtime_studio "
+together=()
 for program in "$root"/build/tests/test_*; do
-  [ -x "$program" ] && run_program "$program" "$(basename "$program")"
+  [ -x "$program" ] && [ -f "$program" ] || continue
+  [[ "$alone" == *" $(basename "$program") "* ]] || together+=("$program")
+done
+rm -f "$root"/build/tests/test_*.status
+progress_together() { echo "$(find "$root/build/tests" -maxdepth 1 -name 'test_*.status' | wc -l) ${#together[@]}"; }
+# shellcheck disable=SC2016
+with_progress "testing, programs" progress_together "$root/build/tests/together.log" \
+  xargs -0 -n 1 -P "$(nproc)" bash -c 'cd "$(dirname "$1")" && status=0; "$1" >"$1.log" 2>&1 || status=$?; echo $status >"$1.status"' run \
+  < <(printf '%s\0' "${together[@]}") || true
+for program in "${together[@]}"; do
+  count_program "$program" "$(basename "$program")" "$(cat "$program.status" 2>/dev/null || echo none)"
+done
+for name in $alone; do
+  [ -x "$root/build/tests/$name" ] && run_program "$root/build/tests/$name" "$name"
 done
 
 # The physics once more with the optimised Simbody, where it was built before; VLAPROBE_SIMBODY=source builds it now.
