@@ -19,6 +19,7 @@ void check_model(const Checked& checked, Reporter& reporter) {
   if (reporter.is_stopped()) return;
   check_starts(model, checked.asset_root, reporter);
   if (reporter.is_stopped()) return;
+  if (!reporter.depth.is_immediate) check_unseen(model, checked.asset_root, reporter);
   if (!reporter.depth.is_immediate) check_buried(model, checked.asset_root, reporter);
   check_repeated(model, reporter);
   if (!reporter.depth.is_immediate) check_wide(model, checked.asset_root, reporter);

@@ -48,6 +48,7 @@ void check_mentions(const Model& model, Reporter& reporter);       // P0404 of w
 void check_named(const Model& model, Reporter& reporter);          // P0201 of metrics
 void check_starts(const Model& model, const AssetRoot& asset_root,
                   Reporter& reporter);                       // P0501, P0502, P0505, P1302, P1511
+void check_unseen(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0505 of parts
 void check_buried(const Model& model, const AssetRoot& asset_root, Reporter&);  // P0507
 void check_repeated(const Model& model, Reporter& reporter);  // P1512
 void check_wide(const Model& model, const AssetRoot& asset_root, Reporter&);   // P1514

@@ -3,6 +3,7 @@
 
 #include "compiler/check/clause_facts.h"
 #include "compiler/check/clause_goal.h"
+#include "runtime/base/utf8.h"
 
 namespace probe::sema {
 namespace {
@@ -57,6 +58,22 @@ std::string unheld(const ClauseFacts& facts, const Clause& clause) {
   return "success measures " + facts.name(*things.begin()) + " against no such place";
 }
 
+// "First put the carrot on the plate, then the cube": a name alone, of what success asks to lie where
+// a clause put another. Of other success it may be the place, and is no clause.
+bool goes_likewise(const ClauseFacts& facts, const Clauses::Left& left) {
+  if (left.of.size() != 1) return false;
+  const ObjectId thing = *left.of.begin();
+  const std::string name = fold_case(facts.model.objects[thing].text.text);
+  const std::string said = fold_case(left.words);
+  if (said != name && said != "the " + name) return false;
+  return std::ranges::any_of(facts.clauses.all, [&](const Clause& clause) {
+    return clause.does == Does::kPuts && clause.certain && clause.goes && !clause.denied &&
+           std::ranges::any_of(clause.where, [&](ObjectId place) {
+             return place != thing && facts.bearing(thing, place);
+           });
+  });
+}
+
 }  // namespace
 
 std::vector<NotHeld> words_not_held(const Model& model, const Task& task, const Clauses& clauses,
@@ -77,6 +94,7 @@ std::vector<NotHeld> words_not_held(const Model& model, const Task& task, const 
     if (!is_ordered) found.push_back({rank.words, "success wants no order of it"});
   }
   for (const Clauses::Left& left : facts.clauses.left) {
+    if (!left.is_spared && goes_likewise(facts, left)) continue;
     if (!left.is_spared || left.of.empty()) {
       found.push_back({left.words, "not understood"});
       continue;

@@ -48,6 +48,12 @@ double Lookout::outside(const Object& object, const Start::Placed& placed) {
   return at->second;
 }
 
+double Lookout::outside(std::span<const scene::Solid> boxes) const {
+  double least = kBehind;
+  for (const Frustum& frustum : fixed_) least = std::min(least, frustum.outside(boxes).value_or(1e10));
+  return least;
+}
+
 // One warning for the task, of the object that is the farthest out of every camera that does not
 // move.
 void check_frame(const TaskStarts& starts, Lookouts& lookouts) {

@@ -45,6 +45,7 @@ bool is_told_above(const Model& model, const Task& task, const Task& sayer) {
 void check_horizons(const Model& model, Reporter& reporter) {
   for (const Task& task : model.tasks) {
     if (!task.complete || task.abstract || task.horizon == 0) continue;
+    if (task.horizon_time) continue;  // of any robot the same
     const Task* const sayer = sayer_of(model, task);
     if (sayer == nullptr) continue;
     const double here = rate_of(model, task), there = rate_of(model, *sayer);
@@ -60,8 +61,9 @@ void check_horizons(const Model& model, Reporter& reporter) {
             task.name, steps, sayer->name, steps / there, there, steps / here, here));
     said.label(task.horizon_span, "said here");
     said.help(
-        fmt::format("write `horizon {:g} steps`, the same time, or the number that `{}` needs",
-                    meant, model.robots[model.scenes[task.scene].robot].name));
+        fmt::format("write `horizon {:g} steps`, the same time, or what `{}` needs; `horizon {:.4g}s` "
+                    "is the same at any rate",
+                    meant, model.robots[model.scenes[task.scene].robot].name, steps / there));
     said.cause = cause_of(task.horizon_span, {model.scenes[task.scene].name});
   }
 }

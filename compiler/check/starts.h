@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -71,6 +72,8 @@ class Lookout {
   bool jitters() const { return jitters_; }
   // px, of the camera that it is the least out of; kBehind where it is behind each.
   double outside(const Object& object, const Start::Placed& placed);
+  // The same of something that boxes make up, when more than half of their corners are out.
+  double outside(std::span<const scene::Solid> boxes) const;
 
  private:
   const Camera* first_ = nullptr;

@@ -212,8 +212,14 @@ bool is_same_place(const Model& model, const Scene& a, const Scene& b) {
   return same_scene(model, a, b) && same_covers(a, b) && a.surface_z == b.surface_z;
 }
 
+// The same time is the same at any control rate.
+bool same_horizon(const Task& a, const Task& b) {
+  if (a.horizon_time && b.horizon_time) return a.horizon_time->si() == b.horizon_time->si();
+  return a.horizon == b.horizon;
+}
+
 bool same_goal(const Model& model, const Task& a, const Task& b) {
-  return a.horizon == b.horizon &&
+  return same_horizon(a, b) &&
          std::equal(a.judged.begin(), a.judged.end(), b.judged.begin(), b.judged.end(),
                     [&](const Metric& p, const Metric& q) {
                       return p.name == q.name && p.readout == q.readout &&

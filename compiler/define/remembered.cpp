@@ -283,6 +283,7 @@ Key Remembered::key_of(const Model& model, const Task& task) {
     out.add(start.value);
   }
   out.add(task.horizon);
+  out.add(task.horizon_time ? task.horizon_time->si() : 0.0);
   out.add(std::uint64_t{task.idle} << 32 | task.delay);
   out.add(std::uint64_t{task.allow_absent} << 1 | std::uint64_t{task.keeps_absent});
   return is_known ? out.key() : Key{};

@@ -94,9 +94,19 @@ struct Enumerator {
       return LayoutProblem{
           Situation::kNotPlaced,
           "layout `" + layout.name + "` places no `" + model.objects[objects[i]].name + "`",
-          layout.span};
+          layout.span, "the layout", place_advice(objects[i])};
     }
     return std::nullopt;
+  }
+
+  // The line that places it, by its role where it has one: a copy of the layout may stand beside it.
+  std::string place_advice(ObjectId id) const {
+    const RoleId role = task.role_of(id);
+    const bool is_distractor = std::ranges::find(task.distractors, id) != task.distractors.end();
+    const std::string& name = role != RoleId::kNone ? model.roles[role].name : model.objects[id].name;
+    return "write `place " + (is_distractor ? std::string("distractors") : name) +
+           " at (X, Y)` there, or in a copy: `layout NAME like " + layout.name + " { place " +
+           (is_distractor ? "distractors in remaining CELLS" : name + " at (X, Y)") + " }`";
   }
 
   std::optional<LayoutProblem> plan_turns() {
@@ -407,6 +417,7 @@ void report_problem(Context& context, const Task& task, const LayoutProblem& pro
   said.label(problem.span, std::string(problem.label));
   if (problem.what == Situation::kStartLacks)
     said.help("each start of the table has a row for every object of the task, by its name or its role");
+  if (!problem.advice.empty()) said.help(problem.advice);
 }
 
 }  // namespace

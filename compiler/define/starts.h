@@ -19,6 +19,7 @@ struct LayoutProblem {
   std::string message;
   Span span;  // within the layout
   std::string_view label = "the layout";
+  std::string advice = {};
 };
 
 class Supports;

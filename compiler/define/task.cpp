@@ -36,7 +36,7 @@ std::string missing_statements(const Task& task) {
       {task.target != ObjectId::kNone || is_free, "target"},
       {task.metrics != MetricsId::kNone, "metrics"},
       {task.say != TemplateId::kNone, "say"},
-      {task.horizon != 0, "horizon"},
+      {task.horizon != 0 || (task.horizon_time && task.abstract), "horizon"},
   };
   std::string missing;
   for (const auto& [there, name] : wanted) {
@@ -168,6 +168,7 @@ void TaskTable::define(std::uint32_t index, std::optional<std::uint32_t> parent)
   const About about(context_.reporter, task.decl_span);
   read_allows(*declared.decl, *declared.body, task);
   read_statements(context_, declared, task, poisoned);
+  count_horizon(context_, task, poisoned);
   Remembered* const remembered = context_.reporter.depth.remembered;
   if (remembered != nullptr) {
     if (poisoned) remembered->forget(index);
@@ -272,8 +273,10 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
   if (Diagnostic* said = missing.empty() ? nullptr : report_missing(task, missing)) {
     for (const RoleId role : {RoleId::kSource, RoleId::kTarget}) {
       const auto where = spoken.find(role);
-      if (where != spoken.end() && task.objects_in(role).empty())
-        said->label(where->second.first, where->second.second);
+      if (where == spoken.end() || !task.objects_in(role).empty()) continue;
+      said->label(where->second.first, where->second.second);
+      const std::string& name = model.roles[role].name;
+      said->help("write `" + name + " OBJECT`; a task without one has words, metrics and a layout that do not speak of `" + name + "`");
     }
   }
   // A layout puts objects somewhere; a part is where its fixture is.

@@ -51,6 +51,25 @@ bool has_broken_part(const Model& model, const Task& task) {
                      [&](ObjectId id) { return is_broken(model.objects, id); });
 }
 
+void count_horizon(Context& context, Task& task, bool& poisoned) {
+  if (!task.horizon_time || task.scene == SceneId::kNone || poisoned) return;
+  const Scene& scene = context.model.scenes[task.scene];
+  const double rate =
+      scene.robot == RobotId::kNone ? 0 : context.model.robots[scene.robot].control_hz;
+  // Of a scene or a robot without one something else is said.
+  if (!(rate > 0)) return;
+  // As many as reach it; what a decimal leaves is no step.
+  const double steps = task.horizon_time->si() * rate, whole = std::ceil(steps * (1 - 1e-12));
+  task.horizon = whole >= 1 && whole <= plan::kMaxHorizon ? static_cast<std::uint64_t>(whole) : 0;
+  if (task.horizon != 0) return;
+  poisoned = true;
+  context
+      .report(Situation::kHorizon, task.horizon_span,
+              fmt::format("expected a horizon between 1 and {} steps, found {:.6g}",
+                          plan::kMaxHorizon, steps))
+      .help(fmt::format("a control step is {:.6g}ms here", 1000 / rate));
+}
+
 namespace {
 
 // One object in one place: a scene with two of a kind needs a second declaration with `like`.

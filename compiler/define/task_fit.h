@@ -15,6 +15,9 @@ void check_refer(Context& context, const Task& task, RoleId role, const Spelled&
 bool has_broken_part(const Model& model, const Task& task);
 
 // Of a task that has all its statements. A delay that is a time becomes steps of its robot.
+// A horizon that is a time in control steps of the task's robot, once it has one.
+void count_horizon(Context& context, Task& task, bool& poisoned);
+
 void check_fit(Context& context, Task& task, bool& poisoned);
 
 }  // namespace probe::sema

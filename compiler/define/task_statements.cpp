@@ -362,14 +362,25 @@ struct TaskReader {
   }
   void operator()(const syntax::HorizonStmt& stmt) {
     task.horizon_span = stmt.span;
-    const auto steps = bound(stmt.steps);
-    if (!steps) return;
-    task.horizon = steps->value;
-    if (task.horizon >= 1 && task.horizon <= plan::kMaxHorizon) return;
-    context.report(
-        Situation::kHorizon, stmt.steps.span,
-        "expected a horizon between 1 and " + std::to_string(plan::kMaxHorizon) + " steps");
-    poisoned = true;
+    task.horizon_time.reset();
+    if (const auto* written = std::get_if<syntax::Int>(&stmt.how_long)) {
+      const auto steps = bound(*written);
+      if (!steps) return;
+      task.horizon = steps->value;
+      if (task.horizon >= 1 && task.horizon <= plan::kMaxHorizon) return;
+      context.report(
+          Situation::kHorizon, written->span,
+          "expected a horizon between 1 and " + std::to_string(plan::kMaxHorizon) + " steps");
+      poisoned = true;
+      return;
+    }
+    // How many steps that are depends on the robot.
+    task.horizon = 0;
+    const auto time = bound(std::get<syntax::Quantity>(stmt.how_long));
+    if (!time) return;
+    task.horizon_time = read_quantity(context, *time, dim::kTime,
+                                      "`horizon` takes a time, or a number of `steps`");
+    poisoned = poisoned || !task.horizon_time;
   }
   void operator()(const syntax::IdleStmt& stmt) {
     const auto steps = bound(stmt.steps);

@@ -20,6 +20,30 @@ std::optional<Frustum> Frustum::of(const Model& model, const Scene& scene, const
   return view;
 }
 
+std::optional<double> Frustum::corner_outside(const Vec3& seen) const {
+  if (seen.x() < 1e-3) return std::nullopt;
+  const double u = camera_->cx - camera_->fx * seen.y() / seen.x();
+  const double v = camera_->cy - camera_->fy * seen.z() / seen.x();
+  return std::max({0.0, -u, u - camera_->width, -v, v - camera_->height});
+}
+
+std::optional<double> Frustum::outside(std::span<const scene::Solid> boxes) const {
+  double most = 0;
+  std::size_t corners_out = 0;
+  for (const scene::Solid& box : boxes) {
+    for (int i = 0; i < 8; ++i) {
+      Vec3 corner = box.centre;
+      for (int k = 0; k < 3; ++k)
+        corner += box.axes[static_cast<std::size_t>(k)] * ((i >> k & 1) != 0 ? 1 : -1);
+      const auto out = corner_outside(world_in_view_ + turn_from_world_ * corner);
+      if (!out) return std::nullopt;
+      corners_out += *out > 0 ? 1 : 0;
+      most = std::max(most, *out);
+    }
+  }
+  return corners_out * 2 > 8 * boxes.size() ? most : 0;
+}
+
 std::optional<double> Frustum::outside(const Object& object, const Start::Placed& placed) const {
   const Mat3 turn = axes_of(placed.turn);
   const Vec3 low(object.box_min.data()), high(object.box_max.data());
@@ -34,12 +58,10 @@ std::optional<double> Frustum::outside(const Object& object, const Start::Placed
   std::size_t corners_out = 0;
   for (std::size_t i = 0; i < 8; ++i) {
     const Vec3 seen = x[i & 1u] + y[i >> 1u & 1u] + z[i >> 2u];
-    if (seen.x() < 1e-3) return std::nullopt;
-    const double u = camera_->cx - camera_->fx * seen.y() / seen.x();
-    const double v = camera_->cy - camera_->fy * seen.z() / seen.x();
-    const double out = std::max({0.0, -u, u - camera_->width, -v, v - camera_->height});
-    corners_out += out > 0 ? 1 : 0;
-    most = std::max(most, out);
+    const auto out = corner_outside(seen);
+    if (!out) return std::nullopt;
+    corners_out += *out > 0 ? 1 : 0;
+    most = std::max(most, *out);
   }
   return corners_out * 2 > 8 ? most : 0;
 }

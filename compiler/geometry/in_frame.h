@@ -4,9 +4,11 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "compiler/model/model.h"
 #include "runtime/base/geometry.h"
+#include "runtime/scene/solid.h"
 
 namespace probe::sema {
 
@@ -19,8 +21,13 @@ class Frustum {
   // nothing when a corner is behind the camera. Half may be cut off: the box of a round object has
   // corners where the object has nothing, and a policy still sees it. It stands on the surface.
   std::optional<double> outside(const Object& object, const Start::Placed& placed) const;
+  // The same of something that boxes in the world make up.
+  std::optional<double> outside(std::span<const scene::Solid> boxes) const;
 
  private:
+  // How far a corner lies outside (px); nothing behind the camera. `seen`: in its frame.
+  std::optional<double> corner_outside(const Vec3& seen) const;
+
   const Camera* camera_ = nullptr;
   double surface_z_ = 0;
   Mat3 turn_from_world_;  // into forward, left, up

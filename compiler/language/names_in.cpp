@@ -331,7 +331,9 @@ class Walker {
     name(stmt.phrase, Kind::kPhrase, stmt.role.text);
   }
   void operator()(const PoseStmt& stmt) { name(stmt.object, kBodies); }
-  void operator()(const HorizonStmt& stmt) { bound(stmt.steps.span, stmt.steps.binder); }
+  void operator()(const HorizonStmt& stmt) {
+    std::visit([this](const auto& much) { bound(much.span, much.binder); }, stmt.how_long);
+  }
   void operator()(const IdleStmt& stmt) { bound(stmt.steps.span, stmt.steps.binder); }
   void operator()(const DelayStmt& stmt) {
     std::visit([this](const auto& much) { bound(much.span, much.binder); }, stmt.how_long);

@@ -583,7 +583,8 @@ struct Task {
   std::map<RoleId, Spelled> refer;  // by which phrase
   std::vector<PoseOverride> poses;
   std::vector<JointStart> joint_starts;
-  std::uint64_t horizon = 0;
+  std::uint64_t horizon = 0;             // control steps
+  std::optional<Quantity> horizon_time;  // the same, where it was said as a time
   std::uint32_t idle = 0;              // steps of standing still before the first of the horizon
   std::uint32_t delay = 0;             // steps until an action acts
   std::optional<Quantity> delay_time;  // the same, as a time

@@ -880,9 +880,9 @@ struct PoseStmt {
   Name object;
   std::vector<Pose> poses;
 };
-struct HorizonStmt {
+struct HorizonStmt {  // `horizon 60 steps`, `horizon 12s`
   Span span;
-  Int steps;
+  std::variant<Int, Quantity> how_long;
 };
 struct IdleStmt {
   Span span;

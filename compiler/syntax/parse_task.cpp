@@ -152,8 +152,7 @@ TaskStmt Parser::task_pose() {
 
 TaskStmt Parser::task_horizon() {
   HorizonStmt out;
-  out.steps = bound_integer();
-  expect_word("steps");
+  out.how_long = steps_or_time();
   return out;
 }
 
@@ -164,16 +163,18 @@ TaskStmt Parser::task_idle() {
   return out;
 }
 
-// Whole numbers of steps, or a time, whose unit touches its number.
 TaskStmt Parser::task_delay() {
   DelayStmt out;
-  if (text_ahead(1) == "steps") {
-    out.how_long = bound_integer();
-    expect_word("steps");
-  } else {
-    out.how_long = bound_quantity();
-  }
+  out.how_long = steps_or_time();
   return out;
+}
+
+// A whole number of steps, or a time, whose unit touches its number.
+std::variant<Int, Quantity> Parser::steps_or_time() {
+  if (text_ahead(1) != "steps") return bound_quantity();
+  const Int steps = bound_integer();
+  expect_word("steps");
+  return steps;
 }
 
 TaskStmt Parser::task_moves() {

@@ -65,6 +65,7 @@ class Parser {
 
   // ---- recovery.cpp ----
   // `noun` stands for the expected set in the message when the set is long; the help then lists it.
+  std::string_view statement_advice() const;
   void fail_expected(std::string_view noun = "something else");
   bool fail_blank_before_unit();
   void fail(Code code, const Span& span, std::string message);
@@ -309,6 +310,7 @@ class Parser {
   TaskStmt task_horizon();
   TaskStmt task_idle();
   TaskStmt task_delay();
+  std::variant<Int, Quantity> steps_or_time();
   TaskStmt task_moves();
   TaskStmt task_metric();
   TaskStmt task_role();

@@ -85,6 +85,21 @@ bool Parser::fail_blank_before_unit() {
   return true;
 }
 
+// What was likely meant where a task's statement goes on: several things in a role of one, and words
+// without quotes.
+std::string_view Parser::statement_advice() const {
+  if (prev_ == kNoToken || on_new_line_) return {};
+  std::uint32_t before = prev_;
+  while (before > 0 && is_trivia(tokens_[--before].kind)) {
+  }
+  const std::string_view word = text_at(before);
+  if (raw_kind() == TokenKind::kComma && (word == "source" || word == "target"))
+    return "one thing fills it; `role goods: set` declares a role that several fill: `goods a, b`";
+  if (raw_kind() == TokenKind::kIdent && word == "say")
+    return "words stand in quotes: `say \"put {the source} on {the target}\"`";
+  return {};
+}
+
 void Parser::fail_expected(std::string_view noun) {
   if (failed_) return;
   if (stray_before_) {  // the stray bytes have been reported and are why the grammar stumbles
@@ -145,6 +160,8 @@ void Parser::fail_expected(std::string_view noun) {
   if (error == nullptr) return;
   if (meant) error->point("did you mean `" + std::string(*meant) + "`?");
   if (in_paren) error->label(paren, "this `(` is not closed");
+  if (const std::string_view advice = statement_advice(); !advice.empty())
+    error->help(std::string(advice));
   if (after_word) error->help("an expression goes on over a line end only inside parentheses");
   if (!is_short) error->help("expected one of " + list);
 }

@@ -131,19 +131,101 @@ std::string tally_text(std::span<const store::ResultRow> rows, const plan::Plan*
   return tally.text(plan);
 }
 
-std::string TallyText::text(const plan::Plan* plan) const {
+namespace {
+
+// "3 not attempted (..)", "1 invalid (..)"; empty where all were judged.
+std::string unjudged_text(const store::NotAttempted& not_attempted, int invalid,
+                          const std::string& first_invalid) {
+  std::string text;
+  if (not_attempted.count() > 0)
+    text += fmt::format(", {} not attempted ({})", not_attempted.count(),
+                        store::to_text(not_attempted));
+  if (invalid > 0) text += fmt::format(", {} invalid ({})", invalid, first_invalid);
+  return text;
+}
+
+// The mean alone; of a `first`, of those in which it came.
+std::string mean_text(std::vector<double> values, const MetricKind& kind) {
+  if (kind.never) std::erase(values, *kind.never);
+  if (values.empty()) return "never";
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return quantity(sum / static_cast<double>(values.size()), kind.dimension);
+}
+
+}  // namespace
+
+std::string TallyText::table(const plan::Plan* plan) const {
+  std::vector<std::string> names;  // of metrics, as they come
+  std::vector<std::vector<std::string>> rows = {{"task", "episodes"}};
+  std::vector<Parts::Remark> remarks;
+  int valid = 0;
+  for (const std::string& task : parts_->order) {
+    for (const Parts::Column& column : parts_->tallies.at(task).columns) {
+      if (std::ranges::find(names, column.name) == names.end()) names.push_back(column.name);
+    }
+  }
+  rows[0].insert(rows[0].end(), names.begin(), names.end());
+  bool has_numbers = false;
+  for (const std::string& task : parts_->order) {
+    const Parts::Tally& tally = parts_->tallies.at(task);
+    valid += tally.valid;
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {task, std::to_string(tally.valid + tally.invalid + tally.not_attempted.count())};
+    for (const std::string& name : names) {
+      const auto column = std::ranges::find(tally.columns, name, &Parts::Column::name);
+      if (column == tally.columns.end()) {
+        row.push_back("-");
+      } else if (column->is_bool) {
+        row.push_back(fmt::format("{}/{}", column->trues, tally.valid));
+      } else {
+        has_numbers = true;
+        row.push_back(mean_text(column->values, kind_of(plan, task, name)));
+      }
+    }
+    for (const Parts::Remark& said : tally.remarks) {
+      auto known = std::ranges::find(remarks, said.text, &Parts::Remark::text);
+      if (known == remarks.end()) known = remarks.insert(known, Parts::Remark{said.text, 0});
+      known->count += said.count;
+    }
+  }
+  std::vector<std::size_t> widths(rows[0].size());
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (const auto& row : rows) {
+    fmt::format_to(out, "{:<{}}", row[0], widths[0]);
+    for (std::size_t i = 1; i < row.size(); ++i) fmt::format_to(out, "  {:>{}}", row[i], widths[i]);
+    text += '\n';
+  }
+  for (const std::string& task : parts_->order) {
+    const Parts::Tally& tally = parts_->tallies.at(task);
+    const std::string unjudged =
+        unjudged_text(tally.not_attempted, tally.invalid, tally.first_invalid);
+    if (!unjudged.empty()) fmt::format_to(out, "{}: {}\n", task, unjudged.substr(2));
+  }
+  std::ranges::stable_sort(remarks, std::ranges::greater(), &Parts::Remark::count);
+  for (std::size_t i = 0; i < remarks.size() && i < kMostRemarks; ++i)
+    fmt::format_to(out, "{} of {}: {}\n", remarks[i].count, valid,
+                   printable(remarks[i].text, kLongestRemark));
+  if (remarks.size() > kMostRemarks || has_numbers)
+    fmt::format_to(out, "{}`results DIR --long` has each task's remarks{}\n",
+                   has_numbers ? "numbers are means; " : "",
+                   has_numbers ? " and the least and most of each number" : "");
+  return text;
+}
+
+std::string TallyText::text(const plan::Plan* plan, bool is_long) const {
+  if (!is_long && parts_->order.size() > kMostInLines) return table(plan);
   std::string text;
   const auto out = std::back_inserter(text);
   for (const std::string& task : parts_->order) {
     const Parts::Tally& tally = parts_->tallies.at(task);
-    fmt::format_to(out, "{}: {} episodes", task,
-                   tally.valid + tally.invalid + tally.not_attempted.count());
-    if (tally.not_attempted.count() > 0)
-      fmt::format_to(out, ", {} not attempted ({})", tally.not_attempted.count(),
-                     store::to_text(tally.not_attempted));
-    if (tally.invalid > 0)
-      fmt::format_to(out, ", {} invalid ({})", tally.invalid, tally.first_invalid);
-    text += '\n';
+    fmt::format_to(out, "{}: {} episodes{}\n", task,
+                   tally.valid + tally.invalid + tally.not_attempted.count(),
+                   unjudged_text(tally.not_attempted, tally.invalid, tally.first_invalid));
     for (const Parts::Column& column : tally.columns) {
       if (column.is_bool) {
         fmt::format_to(out, "  {:<12} {:>4} of {}\n", column.name, column.trues, tally.valid);

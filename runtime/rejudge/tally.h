@@ -1,5 +1,5 @@
-// A run in a few lines a task, for people: of each condition how often it was true, of each number
-// its mean and extremes with the unit.
+// A run for people, in a few lines a task or, of many tasks, a line each: of each condition how often
+// it was true, of each number its mean and, in the lines, its extremes with the unit.
 #pragma once
 
 #include <memory>
@@ -23,9 +23,13 @@ class TallyText {
   TallyText();
   ~TallyText();
   void add(const store::ResultRow& row);
-  std::string text(const plan::Plan* plan) const;
+  // Lines of each task; a table where they are more than kMostInLines, unless `is_long`.
+  static constexpr std::size_t kMostInLines = 5;
+  std::string text(const plan::Plan* plan, bool is_long = false) const;
 
  private:
+  std::string table(const plan::Plan* plan) const;
+
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

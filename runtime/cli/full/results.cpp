@@ -25,7 +25,7 @@ namespace {
 
 struct ResultsArguments {
   std::string dir;
-  bool json = false, csv = false, delivery = false, events = false, follow = false;
+  bool json = false, csv = false, delivery = false, events = false, follow = false, is_long = false;
   std::string with, page;
   AssetOptions assets;
 };
@@ -157,7 +157,7 @@ int tally_verb(const ResultsArguments& arguments) {
     return exit;
   }
   const auto plan = rejudge::stored_plan(arguments.dir);
-  put("{}", tally.text(plan ? &*plan : nullptr));
+  put("{}", tally.text(plan ? &*plan : nullptr, arguments.is_long));
   print_live(*proven);
   print_readings(arguments.dir);
   return exit;
@@ -243,6 +243,8 @@ void add_results(Verb app, int& exit) {
   verb.add_option("DIR", arguments->dir, "results folder").required();
   const Option json = verb.add_flag("--json", arguments->json, "a JSON array of rows");
   verb.add_flag("--csv", arguments->csv, "rows as comma-separated values").excludes(json);
+  verb.add_flag("--long", arguments->is_long,
+                "lines for each task where there are many, in place of a table");
   verb.add_flag("--delivery", arguments->delivery,
                 "whether differing instructions and pictures reached the policy (--json too)");
   verb.add_flag(

@@ -484,6 +484,35 @@ suite own trained on bridge_v2 {
   CHECK(to_json(found.audit).find("\"names_answer\"") != std::string::npos);
 }
 
+TEST_CASE("what is put likewise needs no verb and no place of its own") {
+  const auto not_held = [](const std::string& goal) {
+    const Audited own = audit_text(R"(
+use "std/place.probe"
+role helper
+layout two_and_a_plate {
+  cells back = grid 1 x 2 at (-20cm, 0cm) spread (0cm, 9cm)
+  place source, helper in distinct back
+  place target at (-6cm, 0cm)
+  orient by rest
+  drop 50cm settle 0.5s
+}
+metrics asked { success = at end )" + goal + R"( }
+task two like on_table {
+  source carrot; helper green_cube; target plate; layout two_and_a_plate; metrics asked
+  say "first put {the source} on {the target}, then {the helper}"
+}
+suite own trained on bridge_v2 { tasks { two }; seeds 42 }
+)");
+    std::string words;
+    for (const audit::Unheld& one : own.audit.unheld) words += one.words + ": " + one.why + "\n";
+    return words;
+  };
+  CHECK(not_held("put_in_order(source, target, helper, target)") == "");
+  // It may be where the carrot goes then.
+  CHECK(not_held("on_top_of(source, target)").find("the green cube: not understood") !=
+        std::string::npos);
+}
+
 TEST_CASE("words that nothing is held to are listed with the reason, and counted") {
   const Audited own = audit_text(R"(
 variant kind of carrot_on_plate { say "gently put {the source} on {the target}" }

@@ -29,3 +29,26 @@ TEST_CASE("a camera that moves with the arm is not asked what it sees") {
       "variant v of red_on_tray { camera hand }");
   CHECK_MESSAGE(a->codes() == "", a->said());
 }
+
+TEST_CASE("a drawer that a task speaks of and its camera does not see is told, with what helps") {
+  const auto open_it = [](const std::string& camera, const std::string& what) {
+    return analyze_with_suite(
+        std::string(test::kChest) +
+        "metrics opened { success = at end slide(chest.drawer) > 8cm }\nlayout alone { drop none }\n"
+        "camera other like eye { " + camera + " }\n" + what +
+        "task open_it {\n  scene room; layout alone; metrics opened; horizon 60 steps; target chest.drawer\n"
+        "  say \"open {the target}\"; camera other\n}\n");
+  };
+  CHECK_MESSAGE(open_it("", "")->codes() == "", open_it("", "")->said());
+  const std::string away = "mount arm.base at (0cm, 0cm, 1m) look (-1, 0, -0.1)";
+  const auto behind = open_it(away, "");
+  REQUIRE_MESSAGE(behind->codes() == "P0505", behind->said());
+  CHECK(behind->diagnostics.items().front().severity == Severity::kWarning);
+  CHECK(behind->diagnostics.items().front().message ==
+        "`chest.drawer`, of which `open_it` speaks, lies behind `other`");
+  const auto narrow = open_it("lens 600px, 600px, 3000px, 240px", "");
+  REQUIRE_MESSAGE(narrow->codes() == "P0505", narrow->said());
+  CHECK(narrow->said().find("pixels outside the image of `other`") != std::string::npos);
+  CHECK(narrow->said().find("help: move the fixture, or turn the camera") != std::string::npos);
+  CHECK(open_it(away, "@allow(out_of_frame, \"why\")\n")->codes() == "");
+}

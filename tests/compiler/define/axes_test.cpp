@@ -185,3 +185,11 @@ TEST_CASE("words that ask for something else are another action, not a paraphras
   CHECK(moved("pick {source}, then drop it on {target}",
               "pick first {source}, then drop it onto {target}") == "language.paraphrase");
 }
+
+TEST_CASE("a capital is no other action") {
+  const auto a = analyze_with_suite(
+      "variant loud of red_on_tray { say \"Put {source} on {the target}\" }\n"
+      "variant other of red_on_tray { say \"Lay {source} on {the target}\" }\n");
+  CHECK(axes(a->task("loud")).find("language.action") == std::string::npos);
+  CHECK(axes(a->task("other")) == "language.action");
+}

@@ -57,3 +57,19 @@ TEST_CASE("a role that nothing fills is told with how to fill it") {
   CHECK_MESSAGE(has(text, "error[P1102]: nothing fills role `helper` in task `t`"), text);
   CHECK_MESSAGE(has(text, "write `helper OBJECT`"), text);
 }
+
+TEST_CASE("what a layout does not place is told with the line that places it") {
+  const std::string role = said(
+      "role helper\nmetrics m { success = at end height(helper) > height(source) + 1cm }\n"
+      "task t like red_on_tray { metrics m; helper blue }\n");
+  CHECK_MESSAGE(has(role, "places no `blue` in `t`"), role);
+  CHECK_MESSAGE(has(role, "{ place helper at (X, Y) }`"), role);
+}
+
+TEST_CASE("a role that words speak of is told with how to fill it, and with how to do without") {
+  const std::string text = said("task t like red_on_tray { target none }\n");
+  CHECK_MESSAGE(has(text, "task `t` has no `target`"), text);
+  CHECK_MESSAGE(has(text, "write `target OBJECT`; a task without one has words, metrics and a layout "
+                          "that do not speak of `target`"),
+                text);
+}

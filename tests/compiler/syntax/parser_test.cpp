@@ -365,7 +365,7 @@ variants of a {
   CHECK(std::get<Name>(as<SayStmt>(task.body[9]).what).text == "put");
   CHECK(std::get<TemplateText>(as<SayStmt>(task.body[10]).what).parts.size() == 2);
   CHECK(as<ReferStmt>(task.body[12]).role.text == "target");
-  CHECK(as<HorizonStmt>(task.body[14]).steps.value == 60);
+  CHECK(as<Int>(as<HorizonStmt>(task.body[14]).how_long).value == 60);
   CHECK(as<MetricStmt>(task.body[15]).name.text == "success");
   CHECK(parsed.get<VariantDecl>(1).of.text == "a");
   const auto& members = parsed.get<VariantsDecl>(2).members;

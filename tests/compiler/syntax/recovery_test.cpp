@@ -218,3 +218,19 @@ TEST_CASE("a torn `start` or `sensor` costs its own line, and `none` is whole") 
   CHECK(one.none);
   CHECK(one.joint.text == "top");
 }
+
+TEST_CASE("two things in a role of one, and words without quotes, are answered by what was meant") {
+  const auto text = [](const std::string& task) {
+    const Parsed parsed(task);
+    return render_text(parsed.diagnostics, parsed.sources);
+  };
+  const std::string two = text("task a { source carrot, spoon; target plate }\n");
+  CHECK_MESSAGE(two.find("help: one thing fills it; `role goods: set` declares a role that several "
+                         "fill: `goods a, b`") != std::string::npos,
+                two);
+  const std::string words = text("task a { say put the carrot on the plate; target plate }\n");
+  CHECK_MESSAGE(words.find("help: words stand in quotes: `say \"put {the source} on {the target}\"`") !=
+                    std::string::npos,
+                words);
+  CHECK(text("task a { scene table, other }\n").find("help") == std::string::npos);
+}

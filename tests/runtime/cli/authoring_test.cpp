@@ -190,3 +190,28 @@ TEST_CASE("a mesh that is a file, or a name that the program's own assets have, 
   CHECK(missing.exit == 1);
   CHECK_MESSAGE(contains(missing.err, "vlaprobe assets pack mug.obj -o assets/objects/my_mug"), missing.err);
 }
+
+TEST_CASE("a check of what is fine is one line; other verbs count warnings and say where they stand") {
+  Sandbox box;
+  write_file(box / "fine.probe", "use \"suite/intact.probe\"\nsuite few { tasks { carrot_on_plate }; seeds 1 }\n");
+  const Outcome fine = box.vlaprobe("check fine.probe");
+  CHECK(fine.exit == 0);
+  CHECK(contains(fine.err, " tasks, "));
+  CHECK(contains(fine.err, " files: no findings, "));
+  CHECK(contains(fine.err, " ms"));
+  CHECK(std::count(fine.err.begin(), fine.err.end(), '\n') == 1);
+
+  write_file(box / "odd.probe",
+             "use \"suite/intact.probe\"\n"
+             "variant odd of carrot_on_plate { light dim; distractors nut }\n"
+             "light dim { ambient 0.2; sun (0, 0, -1) power 1 }\n"
+             "suite few { tasks { odd }; seeds 1 }\n");
+  const Outcome check = box.vlaprobe("check odd.probe");
+  CHECK_MESSAGE(contains(check.err, "warning[P0701]"), check.err);
+  for (const std::string verb : {"list odd.probe", "show odd.probe odd", "coverage odd.probe"}) {
+    CAPTURE(verb);
+    const Outcome other = box.vlaprobe(verb);
+    CHECK_MESSAGE(contains(other.err, "; `vlaprobe check odd.probe` shows "), other.err);
+    CHECK(!contains(other.err, "P0701"));
+  }
+}

@@ -34,6 +34,32 @@ TEST_CASE(
         "  top          mean 2, 2 .. 2\n");
 }
 
+TEST_CASE("of many tasks each is one line of a table, and what was not judged stands below") {
+  std::vector<store::ResultRow> rows;
+  for (const char* task : {"carrot_on_plate", "b", "c", "d", "e", "f"}) {
+    for (int episode = 0; episode < 2; ++episode) rows.push_back(row(task, episode, episode, 2));
+  }
+  rows[3].metrics.pop_back();
+  rows[2].metrics.pop_back();
+  rows[4].invalid = "the policy went away";
+  rows[6].remark = rows[8].remark = rows[9].remark = "slipped in the hand";
+  CHECK(rejudge::tally_text(rows, nullptr) ==
+        "task             episodes  success  top\n"
+        "carrot_on_plate         2      1/2    2\n"
+        "b                       2      1/2    -\n"
+        "c                       2      1/1    2\n"
+        "d                       2      1/2    2\n"
+        "e                       2      1/2    2\n"
+        "f                       2      1/2    2\n"
+        "c: 1 invalid (episode 0 seed 0: the policy went away)\n"
+        "3 of 11: slipped in the hand\n"
+        "numbers are means; `results DIR --long` has each task's remarks and the least and most of "
+        "each number\n");
+  rejudge::TallyText tally;
+  for (const store::ResultRow& one : rows) tally.add(one);
+  CHECK(tally.text(nullptr, true).find("carrot_on_plate: 2 episodes\n  success         1 of 2\n") == 0);
+}
+
 TEST_CASE("what was not attempted is told with all its reasons, the most frequent first") {
   std::vector<store::ResultRow> rows;
   const char* const reasons[] = {"too late", "skill 1: far", "skill 1: far", "a", "b", "b"};
