@@ -21,10 +21,23 @@ struct Opening {
   bool is_measured = false;  // of the fingers' shapes; else it is how far they move
 };
 
+// Whether `grip` opens both fingers as far as their joints go, as they were measured.
+bool opens_whole(const Robot& robot) {
+  constexpr double kRounding = 1e-6;  // m
+  return std::ranges::all_of(robot.fingers, [&](const Finger& finger) {
+    const int link = robot.model->find_link(finger.link.text);
+    if (link < 0) return false;
+    const int above = robot.model->links[static_cast<std::size_t>(link)].parent_joint;
+    if (above < 0) return false;
+    const robot::Joint& joint = robot.model->joints[static_cast<std::size_t>(above)];
+    return joint.kind == robot::JointKind::kPrismatic && robot.grip_open >= joint.upper - kRounding;
+  });
+}
+
 std::optional<Opening> opening_of(const Robot& robot) {
   if (!robot.model || robot.fingers.size() != 2) return std::nullopt;
-  if (const auto hand = robot::known_hand(robot.model->name))
-    return Opening{2 * hand->shape.opening_half, true};
+  const auto hand = robot::known_hand(robot.model->name);
+  if (hand && opens_whole(robot)) return Opening{2 * hand->shape.opening_half, true};
   if (robot.grip_turns) return std::nullopt;
   return Opening{2 * std::abs(robot.grip_open - robot.grip_closed), false};
 }
