@@ -11,9 +11,28 @@ namespace {
 
 constexpr int kGap = 4, kCaption = line_height(kSmallText) + 2;
 
+// Broken at blanks; a word that is too long has a line of its own, and is cut where that ends.
+std::vector<std::string> lines_of(Lettering& lettering, std::string_view text, int room) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string word(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const bool fits =
+        !lines.empty() && lettering.width(lines.back() + " " + word, kSmallText) <= room;
+    if (fits) {
+      lines.back() += " " + word;
+    } else {
+      lines.push_back(word);
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
-Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns) {
+Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns,
+                             std::string_view heading) {
   PROBE_CHECK(!cells.empty() && !cells[0].pictures.empty(), "a grid has pictures");
   PROBE_ASSIGN(Lettering* const lettering, Lettering::shared());
   columns = std::max(1, std::min(columns, static_cast<int>(cells.size())));
@@ -21,10 +40,16 @@ Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns) {
   const int width = cells[0].pictures[0].width, height = cells[0].pictures[0].height;
   const int strip = static_cast<int>(cells[0].pictures.size()) * (width + 1) - 1;
   const int step_x = strip + kGap, step_y = height + kCaption + kGap;
-  Picture sheet = make_picture(columns * step_x + kGap, rows * step_y + kGap, {24, 24, 28});
+  const int room = columns * step_x - kGap;
+  const std::vector<std::string> above = lines_of(*lettering, heading, room);
+  const int top = static_cast<int>(above.size()) * kCaption;
+  Picture sheet = make_picture(columns * step_x + kGap, top + rows * step_y + kGap, {24, 24, 28});
+  for (std::size_t i = 0; i < above.size(); ++i)
+    lettering->draw(sheet, kGap, kGap + static_cast<int>(i) * kCaption,
+                    lettering->fit(above[i], room, kSmallText), {235, 235, 235}, kSmallText);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     int x = kGap + static_cast<int>(i) % columns * step_x;
-    const int y = kGap + static_cast<int>(i) / columns * step_y;
+    const int y = top + kGap + static_cast<int>(i) / columns * step_y;
     lettering->draw(sheet, x, y + height + 1, lettering->fit(cells[i].caption, strip, kSmallText),
                     cells[i].color, kSmallText);
     for (const Picture& picture : cells[i].pictures) {

@@ -1,9 +1,11 @@
-// Pictures of one size in rows and columns, with a line of words under each cell.
+// Pictures of one size in rows and columns, with a line of words under each cell and, where there is
+// something to say of all of them, words above.
 #pragma once
 
 #include <array>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -18,8 +20,10 @@ struct GridCell {
   std::array<std::uint8_t, 3> color{200, 200, 200};
 };
 
-// `cells` is not empty. Fails (kVideo) without a font for the captions.
-Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns);
+// `cells` is not empty; `heading` takes as many lines as it needs, or none. Fails (kVideo) without a
+// font.
+Result<Picture> lay_out_grid(const std::vector<GridCell>& cells, int columns,
+                             std::string_view heading = {});
 
 // A picture as wide as a cell's.
 Picture shrink_to(const Picture& picture, int cell_width);

@@ -2,6 +2,7 @@
 #include "runtime/show/preview.h"
 
 #include "runtime/base/asset_root.h"
+#include "runtime/plan/later.h"
 #include "runtime/scene/image.h"
 #include "runtime/show/picture_grid.h"
 #include "runtime/stage/stage.h"
@@ -23,14 +24,15 @@ Status write_preview(const plan::Plan& plan, std::uint32_t task, const std::stri
     GridCell cell;
     cell.pictures.push_back(shrink_to(shown, options.cell_width));
     cell.caption = std::to_string(index);
-    if (index == 0) cell.caption.append("  ").append(plan.text(record.prompt));
     cells.push_back(std::move(cell));
   }
   if (cells.empty()) {
     return Failure{Fault::kUsage,
                    "task `" + std::string(plan.text(record.name)) + "` has no starts", ""};
   }
-  PROBE_ASSIGN(const Picture sheet, lay_out_grid(cells, options.columns));
+  PROBE_ASSIGN(const Picture sheet, lay_out_grid(cells, options.columns,
+                                                  std::string(plan.text(record.name)) + ": " +
+                                                      plan::whole_instruction(plan.tables(), task)));
   return scene::write_png(png_path, sheet.width, sheet.height, sheet.rgb);
 }
 

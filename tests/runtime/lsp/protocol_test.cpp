@@ -72,6 +72,7 @@ TEST_CASE("Neovim is answered all that it can ask, as the protocol has it") {
         "mended: yes\n", "hover: ", "highlight: 1\n", "references: 2\n", "symbols: 3\n",
         "workspace symbols: 1\n", "signature: distance(point, point)\n",
         "completion: ball other third\n", "lens: 0 tasks, 0 episodes vlaprobe.list\n", "foldingRange: ", "documentLink: 1\n",
+        "semanticTokens/full: ", "semanticTokens/range: ", "inlayHint: ", "diagnostic: full ", "prepareRename: ball\n",
         "rename: object other like globe { color blue }\n",
         "formatting: object other like globe { color blue }\n",
         "definition: things.probe 3 object ball { color red; friction 1 }\n", "end: done\n"}) {
@@ -84,7 +85,8 @@ TEST_CASE("Neovim is answered all that it can ask, as the protocol has it") {
   for (const char* method :
        {"codeAction", "codeLens", "completion", "definition", "documentHighlight", "documentLink",
         "documentSymbol", "foldingRange", "formatting", "hover", "references", "rename",
-        "signatureHelp", "publishDiagnostics"})
+        "signatureHelp", "publishDiagnostics", "semanticTokens/full", "semanticTokens/range",
+        "inlayHint", "diagnostic", "prepareRename"})
     CHECK_MESSAGE((said.empty() || said.find(std::string("textDocument/") + method) != said.npos),
                   method);
 }

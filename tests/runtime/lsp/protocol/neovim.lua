@@ -93,10 +93,21 @@ wait('lenses', function() return #vim.lsp.codelens.get(0) > 0 end)
 for _, lens in ipairs(vim.lsp.codelens.get(0)) do say('lens', lens.command.title .. ' ' .. lens.command.command) end
 
 -- Requests of which this version has no command of its own: its client sends them, too.
-for _, method in ipairs({ 'foldingRange', 'documentLink' }) do
-  local all = vim.lsp.buf_request_sync(0, 'textDocument/' .. method, { textDocument = vim.lsp.util.make_text_document_params() }, 20000)
-  for _, answer in pairs(all or {}) do say(method, answer.result and #answer.result or vim.inspect(answer)) end
+local function send(method, params, told)
+  params.textDocument = vim.lsp.util.make_text_document_params()
+  local all = vim.lsp.buf_request_sync(0, 'textDocument/' .. method, params, 20000)
+  for _, answer in pairs(all or {}) do say(method, answer.result and told(answer.result) or vim.inspect(answer)) end
 end
+local function count(result) return #result end
+send('foldingRange', {}, count)
+send('documentLink', {}, count)
+send('semanticTokens/full', {}, function(result) return #result.data / 5 end)
+local whole = { start = { line = 0, character = 0 }, ['end'] = { line = 9, character = 0 } }
+send('semanticTokens/range', { range = whole }, function(result) return #result.data / 5 end)
+send('inlayHint', { range = whole }, count)
+send('diagnostic', {}, function(result) return result.kind .. ' ' .. #result.items end)
+go('ball')
+send('prepareRename', { position = vim.lsp.util.make_position_params().position }, function(result) return result.placeholder end)
 
 go('ball')
 ask('definition', 'textDocument/definition', vim.lsp.buf.definition)
