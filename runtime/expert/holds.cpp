@@ -26,9 +26,13 @@ constexpr double kAgainst = 0.75;  // cosine between a face's normal and the way
 constexpr double kOverhang = -0.3, kMostOverhang = -0.7;  // of a face's normal, upwards
 constexpr double kEdge = 0.005;                           // m: what is nearer is at the edge
 constexpr double kNearBy = 0.6, kFarCost = 40;  // m from the base; cost of a square metre more
-constexpr double kLevelFace = 0.1;              // of a face's normal, upwards: it stands upright
-constexpr double kLeantCost = 0.5;              // an upright hand is stiffer
-constexpr double kKnob = 0.03;  // m from the axis: what is nearer is turned about itself
+// Tangents of how far a hand leans over an edge, and m of the fingers behind it.
+constexpr std::array kOver = {0.6, 1.0, 1.6};
+constexpr std::array kHooked = {0.035, 0.025};
+constexpr double kShallow = 20;     // cost of a m less
+constexpr double kLevelFace = 0.1;  // of a face's normal, upwards: it stands upright
+constexpr double kLeantCost = 0.5;  // an upright hand is stiffer
+constexpr double kKnob = 0.03;      // m from the axis: what is nearer is turned about itself
 constexpr std::array kOnFace = {0.0, 0.6, -0.6, 0.92, -0.92};  // of its half width and height
 constexpr int kLooks = 5;                                      // at the way of the part
 
@@ -55,6 +59,11 @@ class Search {
 
   std::vector<Hold> run() {
     if (part_ == nullptr) return {};
+    if (p_.hooks) {
+      for (std::size_t s = 0; s < part_->solids.size(); ++s) hooks(static_cast<int>(s));
+      sort();
+      return std::move(found_);
+    }
     ways_ = ways_to(part_->pose);
     for (std::size_t s = 0; s < part_->solids.size(); ++s) {
       grasps(static_cast<int>(s));
@@ -65,12 +74,16 @@ class Search {
       upright_ = kLessUpright;
       for (std::size_t s = 0; s < part_->solids.size(); ++s) grasps(static_cast<int>(s));
     }
-    std::stable_sort(found_.begin(), found_.end(),
-                     [](const Hold& a, const Hold& b) { return a.cost < b.cost; });
+    sort();
     return std::move(found_);
   }
 
  private:
+  void sort() {
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Hold& a, const Hold& b) { return a.cost < b.cost; });
+  }
+
   double lever(const Vec3& at) const {
     const Vec3 off = at - point_;
     return (off - axis_.dot(off) * axis_).norm();
@@ -213,6 +226,51 @@ class Search {
     }
   }
 
+  // Over the upper edge of a face that looks where the part comes from, closed fingers behind it.
+  void hooks(int s) {
+    if (!p_.joint.slides) return;
+    const Solid& solid = part_->solids[static_cast<std::size_t>(s)];
+    const Pose& pose = part_->pose;
+    for (int i = 0; i < 3; ++i) {
+      for (const double side : {1.0, -1.0}) {
+        const Vec3 normal = side * Vec3::Unit(i), out = pose.rotation * normal;
+        if (-out.dot(way_at(pose.apply(solid.center()))) < kAgainst) continue;
+        if (std::abs(out.z()) > kLevelFace) continue;
+        int up = (i + 1) % 3, along = (i + 2) % 3;
+        const auto rise = [&](int axis) { return (pose.rotation * Vec3::Unit(axis)).z(); };
+        if (std::abs(rise(up)) < std::abs(rise(along))) std::swap(up, along);
+        for (const double share : kOnFace) {
+          Vec3 edge = solid.center() + side * solid.half()[i] * Vec3::Unit(i);
+          edge[up] += rise(up) > 0 ? solid.half()[up] : -solid.half()[up];
+          edge[along] += share * solid.half()[along];
+          hook(s, edge, normal, out);
+        }
+      }
+    }
+  }
+
+  void hook(int s, const Vec3& edge, const Vec3& normal, const Vec3& out) {
+    const Pose& pose = part_->pose;
+    const Vec3 flat = Vec3(out.x(), out.y(), 0).normalized();
+    Hold hold;
+    hold.follows = Follows::kTouching;
+    hold.solid = s;
+    hold.contact = edge;
+    hold.normal = normal;
+    hold.open = 0;
+    for (const double over : kOver) {
+      const Vec3 down = (over * flat - Vec3::UnitZ()).normalized();
+      for (const double sign : {1.0, -1.0}) {
+        hold.turned = tool_frame(down, sign * Vec3::UnitZ().cross(flat));
+        for (const double deep : kHooked) {
+          hold.deep = deep;
+          hold.tool = pose.inverse() * tool_at(hold, pose, p_.hand);
+          add(hold, kShallow * (kHooked.front() - deep) + turn_cost(hold.turned, down));
+        }
+      }
+    }
+  }
+
   const HoldProblem& p_;
   const Surroundings::Body* part_ = nullptr;
   double sign_ = 1, lever_ = 0, upright_ = kUpright;
@@ -248,7 +306,7 @@ Pose tool_at(const Hold& hold, const Pose& part, const robot::HandShape& hand, d
   // Leant back from the face, their ends meet it with an edge.
   if (down.z() > kStraight) {
     const Vec3 off = (out - out.dot(down) * down).normalized();
-    return {tool + thick * off - hand.tip_below * down, hold.turned};
+    return {tool + thick * off + (hold.deep - hand.tip_below) * down, hold.turned};
   }
   if (across > 1e-6) tool += thick * flat / std::max({across, up, 1e-6});
   const double under = across > up ? kTipUnder * (across - up) / across : 0;

@@ -30,9 +30,11 @@ struct Hold {
   Quat turned;      // of the tool in the base frame when taken
   double open = 1;  // openness of the gripper on the way there
   Vec3 contact = Vec3::Zero(), normal = Vec3::Zero();  // of a push, the part's frame
-  int solid = 0;                                       // of the part: what is held or pushed
+  double deep = 0;  // m of the fingertips past the contact, of hands that reach over an edge
+  int solid = 0;    // of the part: what is held or pushed
   double cost = 0;
   bool pushes() const { return follows == Follows::kTouching; }
+  bool reaches_over() const { return deep > 0; }
 };
 
 // Where the tool is when the part is at `pose`, by `gap` m off the face of a push.
@@ -45,6 +47,7 @@ struct HoldProblem {
   double aim = 0;      // m or rad: where its joint shall go
   Quat now;            // of the tool, to prefer short turns
   bool grasps = true;  // prefer these to pushes
+  bool hooks = false;  // nothing but hands that reach over a part's upper edge and draw it
   robot::HandShape hand;
 };
 

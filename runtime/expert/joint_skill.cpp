@@ -23,11 +23,15 @@ constexpr double kClosedEnough = 0.01, kClosedLeast = 0.03;  // of the way
 constexpr double kBeyond = 0.03, kTurnSlack = 0.01;          // rad, of a turn
 constexpr double kPressEnough = 0.9, kPressLeast = 0.6;      // of the way
 constexpr double kFromAbove = 0.9;                           // cosine of 26 degrees
-constexpr double kBefore = 0.09;     // m from the hold, where the hand comes from
-constexpr double kOff = 0.015;       // m off a face before it is pushed
-constexpr double kAhead = 0.040;     // m (of the arc) that the tool is led ahead of the part
-constexpr double kMostAhead = 0.35;  // rad
+constexpr double kBefore = 0.09;      // m from the hold, where the hand comes from
+constexpr double kBeforeEdge = 0.12;  // the same of a hand that reaches over an edge
+constexpr double kOverEdge = 0.008;   // m that fingertips are above it first
+constexpr double kOff = 0.015;        // m off a face before it is pushed
+constexpr double kAhead = 0.040;      // m (of the arc) that the tool is led ahead of the part
+constexpr double kMostAhead = 0.35;   // rad
 constexpr std::array kShares = {1.0, 0.6, 0.3};  // of the way that is left
+constexpr std::array kEdgeShares = {0.6, 0.3};   // the same of what is drawn by its edge
+constexpr double kEdgeLeast = 0.5;               // of the whole way: as much of that will do
 constexpr double kProgress = 0.1;                // of the way that is left: more is no failure
 constexpr double kPress = 0.02;                  // m that a push aims behind the face...
 constexpr double kPressLever = 0.5;              // ...but no more of its lever: it slides off else
@@ -55,10 +59,18 @@ bool is_same(const Hold& a, const Hold& b) {
 
 }  // namespace
 
+namespace {
+
+// Where a joint is open to its end.
+double far_of(const PartJoint& joint) {
+  return joint.closed == joint.upper ? joint.lower : joint.upper;
+}
+
+}  // namespace
+
 JointSkill::Goal JointSkill::goal_of(const policy::Skill& skill, const PartJoint& joint) {
   using Kind = policy::Skill::Kind;
-  const double far = joint.closed == joint.upper ? joint.lower : joint.upper;
-  const double way = far - joint.closed;  // signed
+  const double way = far_of(joint) - joint.closed;  // signed
   Goal goal;
   if (skill.kind == Kind::kOpen) {
     const OpenShares shares = skill.fully ? kFullyOpen : kOpen;
@@ -135,7 +147,13 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
   HoldLack lack;
   for (const double share : kShares) {
     lack = {};
-    if (plan(view, arm, reach, begun_ + share * (goal_.aim - begun_), &lack)) return true;
+    if (plan(view, arm, reach, begun_ + share * (goal_.aim - begun_), false, &lack)) return true;
+  }
+  // What has nothing to hold may have an edge.
+  HoldLack of_hooks;
+  for (const double share : kEdgeShares) {
+    if (skill_.kind != policy::Skill::Kind::kOpen) break;
+    if (plan(view, arm, reach, begun_ + share * (goal_.aim - begun_), true, &of_hooks)) return true;
   }
   const Surroundings around = surroundings_of(view);
   lack_ = to_text(lack, problem_of(view, around, arm, reach));
@@ -143,12 +161,13 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
 }
 
 bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reach& reach,
-                      double aim, HoldLack* lack) {
+                      double aim, bool hooks, HoldLack* lack) {
   aim_ = aim;
   const Surroundings around = surroundings_of(view);
   const policy::PrivilegedFixture& seen = part(view);
   const Pose pose = view.base.inverse() * seen.pose;
-  const HoldProblem problem = problem_of(view, around, arm, reach);
+  HoldProblem problem = problem_of(view, around, arm, reach);
+  problem.hooks = hooks;
   std::vector<Hold> holds = hold_candidates(problem);
   std::stable_partition(holds.begin(), holds.end(), [&](const Hold& hold) {
     return std::ranges::none_of(failed_, [&](const Hold& old) { return is_same(old, hold); });
@@ -157,8 +176,16 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
     const Hold& hold = holds[i];
     ++lack->holds;
     const Pose at = tool_at(hold, pose, problem.hand, hold.pushes() ? kOff : 0);
-    Pose before = at;
-    before.position -= kBefore * (at.rotation * Vec3::UnitX());
+    // Over an edge: level above it, then down behind it.
+    Pose above = at;
+    if (hooks) above.position.z() += hold.deep + kOverEdge;
+    Pose before = above;
+    if (hooks) {
+      const Vec3 out = pose.rotation * hold.normal;
+      before.position -= kBeforeEdge * Vec3(out.x(), out.y(), 0);
+    } else {
+      before.position -= kBefore * (at.rotation * Vec3::UnitX());
+    }
     std::vector<Pose> moving;
     for (int k = 1; k <= kSamples; ++k) {
       const double by = (aim - seen.joint->position) * k / kSamples;
@@ -168,10 +195,13 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
     const double widest = problem.hand.widest_on_way(arm.openness, hold.open);
     auto way = free_way(around, arm.tcp, before, hand_balls(problem.hand, widest).all());
     const FreeLine last{&around, balls};
-    if (!way || !last.is_free(before, at)) {
+    const bool is_free = way && (hooks ? last.is_free(before, above) && last.is_free(above, at)
+                                       : last.is_free(before, at));
+    if (!is_free) {
       ++lack->blocked;
       continue;
     }
+    if (hooks) way->push_back(above);
     way->push_back(at);
     std::vector<Pose> whole = *way;
     if (hold.pushes()) whole.push_back(tool_at(hold, pose, problem.hand));
@@ -182,6 +212,8 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
     }
     hold_ = hold;
     way_ = std::move(*way);
+    if (hooks)
+      goal_.least = seen.joint->closed + kEdgeLeast * (far_of(*seen.joint) - seen.joint->closed);
     return true;
   }
   return false;
@@ -257,7 +289,8 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
     case Phase::kGo: {
       const bool is_last = next_ + 1 >= way_.size();
       const bool is_next_last = next_ + 2 >= way_.size();
-      const double shift = is_last ? 0.004 : is_next_last ? 0.010 : 0.030;
+      const bool is_before_edge = hold_->reaches_over() && next_ + 3 == way_.size();
+      const double shift = is_last ? 0.004 : is_next_last || is_before_edge ? 0.010 : 0.030;
       still_ = is_near(arm.tcp, at_, kStands, 0.01) ? still_ + 1 : 0;
       at_ = arm.tcp;
       const bool stands = still_ >= 3 || steps_ >= 25;
@@ -311,7 +344,8 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
   switch (phase_) {
     case Phase::kGo: {
       const bool is_last = next_ + 1 >= way_.size();
-      return servo.toward(way_[next_], arm, open, is_last ? kNearHold : kFarPace);
+      const bool is_near = is_last || (hold_->reaches_over() && next_ + 2 >= way_.size());
+      return servo.toward(way_[next_], arm, open, is_near ? kNearHold : kFarPace);
     }
     case Phase::kMeet:
       return servo.settle(way_.back(), arm, open);

@@ -43,7 +43,7 @@ class JointSkill {
   const policy::PrivilegedFixture& part(const policy::Privileged& view) const;
   bool plan(const policy::Privileged& view, const Arm& arm, const Reach& reach);
   bool plan(const policy::Privileged& view, const Arm& arm, const Reach& reach, double aim,
-            HoldLack* lack);
+            bool hooks, HoldLack* lack);
   HoldProblem problem_of(const policy::Privileged& view, const Surroundings& around, const Arm& arm,
                          const Reach& reach) const;
   void refine(const policy::Privileged& view, const Arm& arm, const Reach& reach);

@@ -71,6 +71,7 @@ class Servo {
   Pose ahead_of(std::span<const double> next, const Arm& arm) const;
   void correct_target(const Arm& arm);
   policy::Action aim(const Pose& goal, const Arm& arm, double gripper);
+  Pose ahead_of_measured(const Pose& goal, const Arm& arm, const Pace& pace) const;
   policy::Action go_to(const Pose& pose, const Arm& arm, double gripper);
   double grip_step(double gripper, double openness);
   policy::Action set_target(const Pose& wanted, const Arm& arm, double gripper);

@@ -114,6 +114,36 @@ TEST_CASE(
   CHECK(grip(0.39, kClosedGripper) == step);
 }
 
+TEST_CASE("where the law goes on from where the tool is, it is asked to go beyond, but not far") {
+  const auto model = robot::load_urdf(test::kUrdf);
+  REQUIRE(model.ok());
+  const auto chain = robot::Chain::create(*model, "ee_gripper_link", test::kArm);
+  REQUIRE(chain.ok());
+  const std::vector<double> joints(chain->joint_count(), 0.1);
+  const Arm arm{chain->pose(joints), joints, 1};
+  Servo servo;
+  servo.begin(*chain, arm, robot::EeDeltaInterpolated{});
+  const auto asked = [&](const Vec3& way, const Vec3& turn) {
+    Pose goal = arm.tcp;
+    goal.position += way;
+    goal.rotation = robot::from_rotation_vector(turn) * goal.rotation;
+    return servo.toward(goal, arm, 1, {.shift = 0.05, .turn = 0.30});
+  };
+  // Near by: somewhat beyond, the same way.
+  const policy::Action near = asked({0.01, 0, -0.02}, {0, 0, 0.1});
+  CHECK(near[0] > 0.01);
+  CHECK(near[0] < 0.02);
+  CHECK(near[2] == doctest::Approx(-2 * near[0]));
+  CHECK(near[5] > 0.1);
+  CHECK(near[5] < 0.2);
+  // Far away: by the pace; half a turn goes on the way that it began.
+  const policy::Action far = asked({1, 0, 0}, {0, 0, 3.0});
+  CHECK(far[0] < 0.2);
+  CHECK(far[0] > 0.05);
+  CHECK(far[5] > 0.3);
+  CHECK(far[5] < 1);
+}
+
 TEST_CASE("a step towards a pose keeps to its limits and ends at the pose") {
   const Pose from;
   const Pose to{Vec3(0.1, 0, 0), robot::from_rotation_vector({0, 0, 1})};

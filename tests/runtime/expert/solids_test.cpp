@@ -1,9 +1,13 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <numbers>
 
+#include "runtime/expert/around_solid.h"
 #include "runtime/expert/holds.h"
 #include "runtime/expert/solids.h"
+#include "runtime/robot/hands.h"
+#include "runtime/robot/rotation.h"
 #include "tests/runtime/expert/fake_table.h"
 
 namespace probe::expert {
@@ -79,6 +83,45 @@ TEST_CASE("a drawer with a cup in it is closed by a push that leads where the cu
   const std::vector<Hold> leant = hold_candidates(problem);
   REQUIRE_FALSE(leant.empty());
   for (const Hold& hold : leant) CHECK((hold.turned * Vec3::UnitX()).z() > -0.95);
+}
+
+TEST_CASE("a drawer that has nothing to hold is drawn by its front's upper edge") {
+  // Shut under a top, 8 cm over its front; it opens towards the base.
+  policy::Privileged view = drawer_with({});
+  policy::PrivilegedFixture& drawer = view.fixtures[0];
+  drawer.pose = {{0.6, 0, 0.1}, robot::from_rotation_vector({0, 0, -0.5 * std::numbers::pi})};
+  drawer.joint->position = drawer.joint->closed;
+  policy::PrivilegedFixture top;
+  top.name = "top";
+  top.parts = {test::block({-0.10, -0.12, 0}, {0.10, 0.12, 0.02}),
+               test::block({0.08, -0.12, -0.14}, {0.12, 0.12, 0})};  // and a back
+  top.pose.position = {0.6, 0, 0.24};
+  view.fixtures.push_back(top);
+  const Surroundings around = surroundings_of(view);
+  HoldProblem problem;
+  problem.around = &around;
+  problem.fixture = 0;
+  problem.joint = *drawer.joint;
+  problem.aim = 0.06;
+  problem.now = tool_frame(-Vec3::UnitZ(), Vec3::UnitY());
+  problem.hand = robot::known_hand("wx250s")->shape;
+  problem.hooks = true;
+  const std::vector<Hold> holds = hold_candidates(problem);
+  REQUIRE(!holds.empty());
+  for (const Hold& hold : holds) {
+    CHECK(hold.reaches_over());
+    const Pose tool = tool_at(hold, drawer.pose, problem.hand);
+    const Vec3 down = tool.rotation * Vec3::UnitX();
+    CHECK(down.x() > 0.3);   // over the edge, from the base's side
+    CHECK(down.z() < -0.3);  // behind it
+    const Vec3 tips = tool.position + problem.hand.tip_below * down;
+    CHECK(tips.x() > 0.51);                          // the front is 0.50 to 0.51
+    CHECK(tips.z() < 0.16);                          // and up to 0.16 high
+    CHECK((tool.position - 0.1 * down).x() < 0.55);  // the palm is before it
+  }
+  // Nothing is drawn that turns.
+  problem.joint.slides = false;
+  CHECK(hold_candidates(problem).empty());
 }
 
 }  // namespace probe::expert
