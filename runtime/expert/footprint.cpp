@@ -68,6 +68,20 @@ double best_edge_gap(const Outline& a, const Outline& b) {
 
 }  // namespace
 
+double least_width(const Outline& outline) {
+  if (outline.size() < 3) return 0;
+  double least = std::numeric_limits<double>::infinity();
+  // Two walls that are nearest to one another lie along an edge.
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i];
+    const Vec2 inwards = Vec2(-edge.y(), edge.x()).normalized();
+    double depth = 0;
+    for (const Vec2& corner : outline) depth = std::max(depth, inwards.dot(corner - outline[i]));
+    least = std::min(least, depth);
+  }
+  return least;
+}
+
 double half_diagonal(const Footprint& footprint) {
   Vec2 low = footprint.center, high = low;
   for (const Vec2& p : footprint.whole) {

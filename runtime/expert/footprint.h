@@ -31,6 +31,9 @@ void recenter(Footprint& footprint, const Vec2& center);
 // Of the box around the outline, along the frame's axes.
 double half_diagonal(const Footprint& footprint);
 
+// Of all ways to turn it, the least room between two walls; 0 of a point.
+double least_width(const Outline& outline);
+
 // The convex hull of points; collinear ones are dropped.
 Outline convex_outline(std::vector<Vec2> points);
 

@@ -1,5 +1,7 @@
 #include "runtime/expert/pick_place.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -138,7 +140,7 @@ void PickPlace::advance(const Scene& s, const Means& means) {
     case Phase::kRetreat:
       if (s.tcp.position.z() < release_.position.z() + 0.055 && steps_ < 6) return;
       if (shove_ ? (s.source.center - first_seen_).norm() > kShoved : is_put(s)) {
-        lack_ = shove_ && !errand_.pushes ? "the hand finds no hold of it and pushed it" : "";
+        lack_ = shove_ && !errand_.pushes ? no_hold(s) + " and pushed it" : "";
         return enter(Phase::kRest);
       }
       return start_over(
@@ -146,6 +148,14 @@ void PickPlace::advance(const Scene& s, const Means& means) {
     case Phase::kRest:
       return;
   }
+}
+
+// With both widths where they are why.
+std::string PickPlace::no_hold(const Scene& s) {
+  const double width = least_width(s.source.whole), opens = 2 * s.hand.opening_half;
+  if (width < opens) return "the hand finds no hold of it";
+  return fmt::format("the hand, which opens to {:.1f} cm, finds no hold of it, {:.1f} cm where it is narrowest,",
+                     100 * opens, 100 * width);
 }
 
 bool PickPlace::is_put(const Scene& s) const {

@@ -73,6 +73,7 @@ class PickPlace {
   void start_over(const Means& means, const char* lack);
   bool holds(const Scene& s) const;
   bool is_put(const Scene& s) const;
+  static std::string no_hold(const Scene& s);
   bool moved_since_plan(const Scene& s) const;
   bool lifted_enough(const Scene& s, double rise) const;
   bool path_done() const { return path_step_ >= path_->path.steps(); }

@@ -44,6 +44,12 @@ TEST_CASE("outlines apart are at their nearest points, overlapping ones have a d
   CHECK(separation(a, over) == doctest::Approx(-0.1));
 }
 
+TEST_CASE("the least width is that between two walls, however they are turned") {
+  CHECK(least_width(convex_outline({{0, 0}, {4, 0}, {4, 1}, {0, 1}})) == doctest::Approx(1));
+  CHECK(least_width(convex_outline({{1, 0}, {2, 1}, {1, 2}, {0, 1}})) == doctest::Approx(std::sqrt(2.0)));
+  CHECK(least_width({}) == 0);
+}
+
 TEST_CASE("an object without a hull is a point") {
   const Footprint print = footprint_of({}, {Vec3(1, 2, 3), Quat::Identity()});
   CHECK(print.whole.empty());

@@ -40,6 +40,11 @@ TEST_CASE("what cannot be gripped is pushed aside, and nothing else moves") {
     }
     const std::vector<Vec3> after = places();
     CHECK((after[0] - before[0]).head<2>().norm() > 0.03);
+    const std::string remark = policy->remark().value_or("");
+    CHECK_MESSAGE(remark.find(plate ? "cm where it is narrowest, and pushed it"
+                                    : ", finds no hold of it, 10.0 cm where it is narrowest, and pushed it") !=
+                      std::string::npos,
+                  remark);
     CHECK((after[1] - before[1]).norm() < 0.005);
     CHECK((after[2] - before[2]).norm() < 0.005);
   }
