@@ -20,6 +20,7 @@
 #include "runtime/expert/tidy_skills.h"
 #include "runtime/expert/waypoints.h"
 #include "runtime/expert/wrong_skills.h"
+#include "runtime/robot/grip_command.h"
 
 namespace probe::expert {
 namespace {
@@ -278,7 +279,10 @@ class Expert final : public policy::Policy {
       ++skill_;
       skill_begun_ = false;
     }
-    return servo_.hold(arm_of(seen(observation)), kOpenGripper);
+    // Fingers that turn stand far out to both sides when they are wide: they stay as they are.
+    const Arm arm = arm_of(seen(observation));
+    const bool turn = !reach_->hand().shape.turning.empty();
+    return servo_.hold(arm, turn ? robot::command_of_openness(arm.openness) : kOpenGripper);
   }
 
   // False: another skill was put before it and comes first.

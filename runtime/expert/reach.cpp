@@ -9,6 +9,7 @@
 #include "runtime/expert/servo.h"
 #include "runtime/policy/policy.h"
 #include "runtime/robot/ik.h"
+#include "runtime/robot/interpolated.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::expert {
@@ -51,11 +52,26 @@ Result<Reach> Reach::create(const robot::Robot& robot) {
     return Failure{Fault::kUrdf, fmt::format("no joint moves the link `{}`", robot.tcp_link),
                    model.path};
   }
-  return Reach(std::move(chain), *robot.hand, shoulder, longest);
+  Reach made(std::move(chain), *robot.hand, shoulder, longest);
+  made.ignores_limits_ = std::holds_alternative<robot::EeDeltaInterpolated>(robot.law);
+  return made;
 }
 
 double Reach::beyond(const Vec3& place) const {
   return std::max(0.0, (place - shoulder_).norm() - longest_);
+}
+
+bool Reach::come_to(const Pose& at, std::span<double> joints) const {
+  if (!ignores_limits_) {
+    return robot::solve_ik(chain_, at, joints,
+                           {.position_tolerance = 1e-5, .rotation_tolerance = 1e-5})
+        .converged;
+  }
+  if (!robot::approach_pose(chain_, at, joints)) return false;
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j] < chain_.lower()[j] || joints[j] > chain_.upper()[j]) return false;
+  }
+  return true;
 }
 
 std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
@@ -70,11 +86,7 @@ std::optional<std::vector<JointVector>> Reach::follow(std::span<const double> q,
   for (const Pose& goal : way) {
     for (int i = 0; i < kMostSolves; ++i) {
       at = stepped(at, goal, 0.05, 0.3);
-      if (!robot::solve_ik(chain_, at, now,
-                           {.position_tolerance = 1e-5, .rotation_tolerance = 1e-5})
-               .converged) {
-        return std::nullopt;
-      }
+      if (!come_to(at, now)) return std::nullopt;
       const robot::PoseError left = robot::pose_error(at, goal);
       if (left.position < 1e-9 && left.rotation < 1e-9) break;
     }

@@ -36,10 +36,17 @@ class Reach {
  private:
   Reach(robot::Chain chain, const robot::Hand& hand, const Vec3& shoulder, double longest)
       : chain_(std::move(chain)), hand_(hand), shoulder_(shoulder), longest_(longest) {}
+  // Joint positions that put the tool there, from those given.
+  bool come_to(const Pose& at, std::span<double> joints) const;
+
   robot::Chain chain_;
   robot::Hand hand_;
   Vec3 shoulder_;   // the lowest point that no joint moves; base frame
   double longest_;  // m: of the arm stretched out from there
+  // The law's own inverse kinematics goes past limits, where joints stay behind: it must not come
+  // to them. Else ours, which turns off at them, as any law gets there that is told joints or
+  // targets.
+  bool ignores_limits_ = false;
 };
 
 }  // namespace probe::expert
