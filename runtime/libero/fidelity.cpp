@@ -1,8 +1,11 @@
 #include "runtime/libero/fidelity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 namespace probe::libero {
 namespace {
@@ -19,6 +22,30 @@ bool has_files(const Records& records, const std::string& ending) {
     if (at->path().filename().string().ends_with(ending)) return true;
   }
   return false;
+}
+
+// Tasks that are recorded and not in the import: no row below measures them, and that is a row.
+Result<std::optional<FidelityRow>> lacking_row(Imported& imported, Records& records) {
+  FidelityRow row{"recorded tasks",
+                  "all are in the import",
+                  "",
+                  "what the rows below measure is the others",
+                  Held::kNo,
+                  {}};
+  const std::size_t all = records.tasks().size();
+  std::set<std::string> lacking;
+  for (const RecordedTask& task : records.tasks()) {
+    PROBE_ASSIGN(const bool is_there, imported.has(task.suite, task.name()));
+    if (is_there) continue;
+    lacking.insert(task.key());
+    row.others.push_back(task.key() + ": is not in the import");
+  }
+  if (lacking.empty()) return std::optional<FidelityRow>();
+  if (lacking.size() == all)
+    return Failure{Fault::kUsage, "the import has none of the recorded tasks", imported.folder()};
+  records.leave_out([&](const RecordedTask& task) { return lacking.contains(task.key()); });
+  row.figure = fmt::format("{} of {}", all - lacking.size(), all);
+  return std::optional(std::move(row));
 }
 
 }  // namespace
@@ -54,6 +81,10 @@ Result<std::vector<FidelityRow>> measure_fidelity(const FidelityOptions& options
     PROBE_ASSIGN(rows.emplace_back(),
                  tasks_row(imported, options.original, records ? &*records : nullptr));
     PROBE_ASSIGN(rows.emplace_back(), starts_row(imported, options.original));
+  }
+  if (records) {
+    PROBE_ASSIGN(const auto lacking, lacking_row(imported, *records));
+    if (lacking) rows.push_back(*lacking);
   }
   if (records && records->has("libero_object_classes.json")) {
     PROBE_ASSIGN(rows.emplace_back(), masses_row(imported, *records));

@@ -72,9 +72,10 @@ Json facts_json(const std::vector<BddlFact>& facts) {
 // What of a task differs; nothing: it is the same.
 Result<std::string> difference(Imported& imported, const OriginalTask& task,
                                const Records* records) {
+  PROBE_ASSIGN(const bool is_there, imported.has(task.suite->folder, task.name()));
+  if (!is_there) return std::string("is not in the import");
   PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite->folder));
   const auto index = plan->find_task(task.name());
-  if (!index) return std::string("is not in the import");
   const plan::TaskRecord& record = plan->tasks()[*index];
   if (plan->suites().empty()) return std::string("is of no suite");
   const auto members = plan->members(plan->suites()[0]);
@@ -139,13 +140,14 @@ Result<FidelityRow> starts_row(Imported& imported, const std::string& original) 
   std::size_t starts = 0, equal = 0, missing = 0;  // tasks without any start
   double place = 0, turn = 0;
   PROBE_TRY(each_task(root, [&](const OriginalTask& task) -> Status {
-    PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite->folder));
-    const auto index = plan->find_task(task.name());
-    if (!index) {
+    PROBE_ASSIGN(const bool is_there, imported.has(task.suite->folder, task.name()));
+    if (!is_there) {
       ++missing;
       row.others.push_back(task.key() + ": is not in the import");
       return {};
     }
+    PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite->folder));
+    const auto index = plan->find_task(task.name());
     const plan::TaskRecord& record = plan->tasks()[*index];
     const plan::SceneRecord& scene = plan->scenes()[record.scene];
     // Fixtures of the scene are those of the problem in their order, but for what carries all.

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "compiler/format/format.h"
 #include "runtime/assets/mujoco.h"
@@ -125,6 +126,7 @@ class LiberoImport {
     }
     if (!options_.poses.empty()) PROBE_TRY(read_poses());
     for (const Suite& suite : suites()) PROBE_TRY(read_suite(suite));
+    PROBE_TRY(check_poses());
     PROBE_TRY(convert_things());
     PROBE_TRY(convert_rooms());
     PROBE_TRY(write_things());
@@ -143,6 +145,7 @@ class LiberoImport {
           "are 2 cm wide; `--poses FILE` says it otherwise");
     }
     report_.bytes = out_.bytes();
+    report_.suites = written_;
     PROBE_TRY(out_.finish());
     return std::move(report_);
   }
@@ -188,8 +191,10 @@ class LiberoImport {
       return {};
     }
     const TaskOrder order = order_tasks(suite, stems);
-    for (const std::string& stem : order.missing)
+    for (const std::string& stem : order.missing) {
+      left_out_.insert({std::string(suite.folder), stem});
       say("missing", fmt::format("{}: {}.bddl", suite.folder, stem));
+    }
     for (const std::string& stem : order.strange) {
       say("odd", fmt::format("{}: {}.bddl is no task of the released benchmark and is left out",
                              suite.folder, stem));
@@ -220,6 +225,7 @@ class LiberoImport {
   }
 
   void leave_out(const Suite& suite, const std::string& stem, const std::string& why) {
+    left_out_.insert({std::string(suite.folder), stem});
     say("missing", fmt::format("{}: {} is left out: {}", suite.folder, stem, shorter(why)));
   }
 
@@ -250,7 +256,8 @@ class LiberoImport {
       if (cells.size() != 10)
         return Failure{Fault::kUsage, fmt::format("expected 10 cells, found {}", cells.size()),
                        where};
-      FixturePose pose{std::string(cells[0]), std::string(cells[1]), std::string(cells[2]), {}};
+      FixturePose pose{
+          std::string(cells[0]), std::string(cells[1]), std::string(cells[2]), {}, where};
       double squares = 0;
       for (std::size_t i = 0; i < 7; ++i) {
         double value = 0;
@@ -266,6 +273,36 @@ class LiberoImport {
       poses_.push_back(std::move(pose));
     }
     return {};
+  }
+
+  // After the suites are read: every row is of a fixture that is there, each once. Rows of tasks
+  // that are left out, with a line of their own, stay.
+  Status check_poses() const {
+    std::map<std::tuple<std::string, std::string, std::string>, std::string> first;
+    for (const FixturePose& pose : poses_) {
+      const auto suite = std::ranges::find_if(
+          tasks_, [&](const auto& one) { return one.first->folder == pose.suite; });
+      if (suite == tasks_.end() && !find_suite(pose.suite))
+        return Failure{Fault::kUsage, "there is no suite `" + pose.suite + "`", pose.where};
+      const auto [known, is_new] =
+          first.try_emplace({pose.suite, pose.stem, pose.fixture}, pose.where);
+      if (!is_new)
+        return Failure{Fault::kUsage,
+                       "says once more where `" + pose.fixture + "` stands, as " + known->second,
+                       pose.where};
+      if (suite == tasks_.end() || left_out_.contains({pose.suite, pose.stem})) continue;
+      const auto task = std::ranges::find(suite->second, pose.stem, &TaskSource::stem);
+      if (task == suite->second.end())
+        return Failure{Fault::kUsage, "`" + pose.suite + "` has no task `" + pose.stem + "`",
+                       pose.where};
+      if (std::ranges::find(task->problem.fixtures, pose.fixture, &BddlThing::name) ==
+          task->problem.fixtures.end())
+        return Failure{Fault::kUsage, "the task has no fixture `" + pose.fixture + "`", pose.where};
+    }
+    return {};
+  }
+  static bool find_suite(const std::string& name) {
+    return std::ranges::any_of(suites(), [&](const Suite& suite) { return suite.folder == name; });
   }
 
   // ---- models
@@ -665,6 +702,7 @@ class LiberoImport {
   Path root_, assets_;
   std::string base_;
   std::vector<FixturePose> poses_;
+  std::set<std::pair<std::string, std::string>> left_out_;  // suite and task
   std::vector<std::pair<const Suite*, std::vector<TaskSource>>> tasks_;
   Things things_;
   std::map<std::string, std::string> declarations_, instances_, lacking_;

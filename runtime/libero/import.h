@@ -28,6 +28,7 @@ struct ImportReport {
   std::size_t tasks = 0, starts = 0, files = 0;
   std::size_t broken = 0;  // things for which a text that was written does not check
   std::uint64_t bytes = 0;
+  std::vector<std::string> suites;  // that have a text, at least one: "libero_goal"
 };
 
 // OUT appears whole or not at all. A task whose problem, starts or models cannot be read is a line

@@ -6,9 +6,20 @@
 
 namespace probe::libero {
 
+std::string Imported::text_of(std::string_view suite) const {
+  return folder_ + "/" + std::string(suite) + ".probe";
+}
+
+Result<bool> Imported::has(std::string_view suite, std::string_view task) {
+  std::error_code error;
+  if (!std::filesystem::exists(text_of(suite), error)) return false;
+  PROBE_ASSIGN(const plan::Plan* of, plan(suite));
+  return of->find_task(task).has_value();
+}
+
 Result<const plan::Plan*> Imported::plan(std::string_view suite) {
   if (const auto known = plans_.find(suite); known != plans_.end()) return known->second.get();
-  const std::string text = folder_ + "/" + std::string(suite) + ".probe";
+  const std::string text = text_of(suite);
   std::error_code error;
   if (!std::filesystem::is_regular_file(text, error))
     return Failure{Fault::kUsage, "the import has no such suite", text};
@@ -25,7 +36,7 @@ Result<std::uint32_t> Imported::find(const plan::Plan& plan, std::string_view su
                                      std::string_view task) const {
   if (const auto index = plan.find_task(task)) return *index;
   return Failure{Fault::kUsage, "the suite has no task `" + std::string(task) + "`",
-                 folder_ + "/" + std::string(suite) + ".probe"};
+                 text_of(suite)};
 }
 
 Result<std::shared_ptr<const stage::SharedAssets>> Imported::assets(std::string_view suite,

@@ -21,6 +21,8 @@ class Imported {
   // Compiled once; lives as long as this. Fails (kUsage, where = the text) where the folder lacks
   // it or it does not check.
   Result<const plan::Plan*> plan(std::string_view suite);
+  // Whether the folder has the task: a suite of which no task could be imported has no text.
+  Result<bool> has(std::string_view suite, std::string_view task);
   // Of a task by its name in the text.
   Result<std::shared_ptr<const stage::SharedAssets>> assets(std::string_view suite,
                                                             std::string_view task);
@@ -28,6 +30,7 @@ class Imported {
                                               const stage::StageOptions& options);
 
  private:
+  std::string text_of(std::string_view suite) const;
   Result<std::uint32_t> find(const plan::Plan& plan, std::string_view suite,
                              std::string_view task) const;
 

@@ -3,6 +3,7 @@
 // lack theirs are not measured.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class Records {
 
   const std::string& folder() const { return folder_; }
   const std::vector<RecordedTask>& tasks() const { return tasks_; }
+  // Without these, which are gone then.
+  void leave_out(const std::function<bool(const RecordedTask&)>& which) {
+    std::erase_if(tasks_, which);
+  }
   bool has(const std::string& file) const;
   Result<std::string> text(const std::string& file) const;
   Result<Json> json(const std::string& file) const;

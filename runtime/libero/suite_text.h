@@ -26,6 +26,7 @@ struct TaskSource {
 struct FixturePose {
   std::string suite, stem, fixture;
   StatePose pose;
+  std::string where;  // FILE:LINE
 };
 
 // What stands for a task in the text.

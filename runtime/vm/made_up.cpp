@@ -97,6 +97,9 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
       if (bodies[i].index < fingers) world.fingers.push_back(static_cast<std::uint16_t>(i));
     } else if (kind == plan::BodyKind::kFixture) {
       world.fixture = static_cast<std::uint16_t>(i);
+    } else if (kind == plan::BodyKind::kPart) {
+      // Apart, as regions of two parts may be one box in the parts' own frames.
+      at = {0, -kFar * static_cast<double>(i), table + kFar};
     }
     world.starts[i].position = at;
     world.put(i, at);

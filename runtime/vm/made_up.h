@@ -16,7 +16,7 @@ namespace probe::vm {
 inline constexpr double kMadeUpContact = 0.01;
 
 // The task's bodies where its first episode turns them, half a metre from one another and from the
-// arm; nothing touches.
+// arm, parts of fixtures as well as objects; nothing touches.
 struct MadeUpWorld {
   std::vector<BodyStart> starts;
   StepSample sample;

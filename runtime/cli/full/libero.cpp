@@ -23,7 +23,8 @@ int import_libero(libero::ImportOptions& options) {
         options.to);
     return kOutside;
   }
-  say("next: vlaprobe check {}/libero_goal.probe --assets {}\n", options.to, options.to);
+  say("next: vlaprobe check {}/{}.probe --assets {}\n", options.to, imported->suites.front(),
+      options.to);
   return kFine;
 }
 

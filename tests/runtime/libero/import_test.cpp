@@ -323,6 +323,16 @@ TEST_CASE(
         std::string::npos);
   CHECK(refused(header + place + "0.2,-0.3,0.92,0.8,0.6,0,0\n").find("is tilted") !=
         std::string::npos);
+  // What is of nothing here would be left out silently, and the fixture stand elsewhere.
+  const std::string pose = "0.215,-0.285,0.92,0,0,0,1\n";
+  CHECK(refused(header + "libero_gaol," + kTask + ",chest_1," + pose)
+            .find("poses.csv:2: there is no suite `libero_gaol`") != std::string::npos);
+  CHECK(refused(header + "libero_90,put_it_away,chest_1," + pose)
+            .find("poses.csv:2: `libero_90` has no task `put_it_away`") != std::string::npos);
+  CHECK(refused(header + "libero_90," + kTask + ",chest_9," + pose)
+            .find("poses.csv:2: the task has no fixture `chest_9`") != std::string::npos);
+  CHECK(refused(header + place + pose + place + pose).find("poses.csv:3: says once more") !=
+        std::string::npos);
 }
 
 TEST_CASE("a disk that is full is told with the file, and nothing stays") {

@@ -195,6 +195,32 @@ suite all { tasks { ordered, free }; seeds 0 }
   CHECK(solves(plan, "ordered", 0));
 }
 
+TEST_CASE("regions of two drawers are two places, though their boxes are one in their own frames") {
+  const plan::Plan plan = kitchen_of(R"(
+fixture pair {
+  urdf "fixtures/cabinet/cabinet.urdf"; at (2cm, 32cm, 90cm) yaw -90deg
+  part top_drawer link top_drawer name "top drawer"
+  part middle_drawer link middle_drawer name "middle drawer"
+  region in_top of top_drawer box (-8cm, -12cm, -3cm) .. (10cm, 12cm, 2cm)
+  region in_middle of middle_drawer box (-8cm, -12cm, -3cm) .. (10cm, 12cm, 2cm)
+}
+scene paired like wide { fixture pair }
+layout alone { cells c = grid 2 x 2 at (-20cm, -13cm) spread (6.5cm, 6.5cm); place source in distinct c; orient by rest; drop 10cm settle 0.5s }
+metrics stowed { success = at end lies_in(source, target) }
+task upper like kept { scene paired; layout alone; metrics stowed; target pair.in_top; say "put {the source} into the top drawer" }
+task lower like upper { target pair.in_middle; say "put {the source} into the middle drawer" }
+suite all { tasks { upper, lower }; seeds 0 }
+)");
+  for (const auto& [task, region] : {std::pair{"upper", "top"}, {"lower", "middle"}}) {
+    const auto derived = vm::derive_solution(plan, plan.find_task(task).value());
+    REQUIRE(derived.ok());
+    std::string text;
+    for (const plan::SkillRecord& skill : *derived)
+      text += plan::skill_text(plan.tables(), skill) + "; ";
+    CHECK_MESSAGE(text.find(std::string("put carrot in pair.in_") + region) != text.npos, text);
+  }
+}
+
 TEST_CASE("a turned region is put into where it is, not in the larger box around it") {
   const plan::Plan plan = kitchen_of(R"(
 scene slotted like wide {
