@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "runtime/world/lanes.h"
 
@@ -173,11 +174,71 @@ void reset_impulses(Problem* problem) {
   }
 }
 
+// The impulses that a substep begins with answer what the drives pressed with in the last one.
+// Where targets grow from substep to substep, and begin anew, sweeps find by themselves only slowly
+// how much more or less that is now: a light thing between two fingers hides one from the other. So
+// all impulses that the arm gives and takes are scaled to what the drives press with now, by the
+// factor that leaves the least energy along that line.
+template <typename Lanes>
+class LoadMatch {
+ public:
+  LoadMatch(Problem* problem, Lanes lanes) : problem_(problem), lanes_(lanes) {
+    for (const ContactRows& c : problem->rows)
+      if (c.columns != nullptr) {
+        free_ += work(c);
+        give_ += c.give * c.rows[kNormal].impulse * c.rows[kNormal].impulse;
+      }
+  }
+  // After all impulses were applied.
+  void scale() {
+    double with = 0;
+    for (const ContactRows& c : problem_->rows)
+      if (c.columns != nullptr) with += work(c);
+    const double own = with - free_ + give_;  // of the impulses, by themselves
+    if (!(own > 0)) return;
+    const double factor = std::clamp(-free_ / own, 0.0, kMostMatched);
+    for (size_t index = 0; index < problem_->rows.size(); ++index) {
+      ContactRows& c = problem_->rows[index];
+      if (c.columns == nullptr) continue;
+      const Sides s = sides(c, problem_->bodies);
+      for (const RowIndex r : kWarmOrder) {
+        const double more = (factor - 1) * c.rows[r].impulse;
+        if (more == 0 || (r == kTwist && !c.torsion)) continue;
+        c.rows[r].impulse += more;
+        problem_->contacts[index].start[r] = c.rows[r].impulse;
+        push(c, r, s, more, problem_->u.data(), lanes_);
+      }
+    }
+  }
+
+ private:
+  // Impulses times the speeds that they work on.
+  double work(const ContactRows& c) const {
+    const Sides s = sides(c, problem_->bodies);
+    double sum = 0;
+    for (const RowIndex r : kWarmOrder) {
+      const double impulse = c.rows[r].impulse;
+      if (impulse == 0 || (r == kTwist && !c.torsion)) continue;
+      const double v = row_speed(c, r, s, problem_->u.data(), lanes_);
+      sum += impulse * (r == kNormal ? v + c.bias : v);
+    }
+    return sum;
+  }
+
+  static constexpr double kMostMatched = 2;
+  Problem* problem_;
+  Lanes lanes_;
+  double free_ = 0, give_ = 0;
+};
+
 }  // namespace
 
 void warm_start(Problem* problem, const JointResponse& response) {
   double* u = problem->u.data();
   with_lanes(problem->lanes, [&](auto lanes) {
+    std::optional<LoadMatch<decltype(lanes)>> match;
+    const auto is_soft = [](const ContactRows& c) { return c.give > 0; };
+    if (std::ranges::any_of(problem->rows, is_soft)) match.emplace(problem, lanes);
     for (size_t index = 0; index < problem->rows.size(); ++index) {
       ContactRows& c = problem->rows[index];
       const Sides s = sides(c, problem->bodies);
@@ -187,6 +248,7 @@ void warm_start(Problem* problem, const JointResponse& response) {
         if (impulse != 0 && (c.torsion || r != kTwist)) push(c, r, s, impulse, u, lanes);
       }
     }
+    if (match) match->scale();
   });
   for (LimitRow& row : problem->limits) {
     row.start = row.impulse;

@@ -120,6 +120,9 @@ TEST_CASE("states come in every layout") {
   CHECK(padded[5] == doctest::Approx(0.3));
   CHECK(padded[6] == 0);
   CHECK(state(StateLayout::kXyzRpyOpenness).size() == 7);
+  CHECK(state(StateLayout::kXyzXyzwClosedness) ==
+        std::vector<double>{0.1, 0.2, 0.3, q.x(), q.y(), q.z(), q.w(), 0.25});
+  CHECK(state(StateLayout::kClosedness) == std::vector<double>{0.25});
   CHECK(state(StateLayout::kXyzRotvecFingers).back() == 0.03);
   CHECK(state(StateLayout::kJoints) == measured.joints);
   CHECK(state(StateLayout::kJointsOpenness) == std::vector<double>{1, 2, 3, 4, 5, 6, 0.75});
