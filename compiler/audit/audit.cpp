@@ -51,7 +51,7 @@ constexpr std::array<KindName, 28> kKinds = {{
     {Kind::kBeside, "beside", "success of an object that lies on the table beside the target"},
     {Kind::kOnFixture, "on_fixture",
      "success of an object that lies on a fixture beside the target"},
-    {Kind::kHeld, "held", "success of an object that is still held above the target"},
+    {Kind::kHeld, "held", "success of an object that is still held above the target or in it"},
     {Kind::kInTheAir, "in_the_air", "success of an object in the air that nothing touches"},
     {Kind::kTouchedOnce, "touched_once",
      "success at the last step that counts a touch which may be over"},
@@ -304,15 +304,16 @@ class Auditor {
     constexpr Rule kOnFixture = {Kind::kOnFixture, "success",
                                  "`success` is true of a source that a fixture alone holds up, its "
                                  "box clear of the target's"};
-    constexpr Rule kHeld = {Kind::kHeld, "success",
-                            "`success` is true of a source that both fingers hold above the "
-                            "target and nothing else touches"};
+    constexpr Rule kHeld = {
+        Kind::kHeld, "success",
+        "`success` is true of a source that both fingers hold above the target, or in "
+        "it, and nothing else touches"};
     constexpr Rule kOneOnTable = {Kind::kBeside, "success",
                                   "`success` is true when one of the things that are put somewhere "
                                   "lies on the table, its box clear of where it belongs"};
     constexpr Rule kOneHeld = {Kind::kHeld, "success",
                                "`success` is true when one of the things that are put somewhere is "
-                               "still held above it and nothing else touches it"};
+                               "still held above it, or in it, and nothing else touches it"};
     constexpr Rule kAir = {Kind::kInTheAir, "success",
                            "`success` is true of a source in the air that nothing touches: thrown, or "
                            "falling"};

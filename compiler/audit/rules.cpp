@@ -5,6 +5,7 @@
 
 #include "runtime/plan/isa.h"
 #include "runtime/plan/readouts.h"
+#include "runtime/plan/regions.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
 #include "runtime/vm/claims.h"
@@ -90,14 +91,36 @@ Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::
   return false;
 }
 
-Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
-  if (!has_both(plan, task)) return false;
-  vm::MadeUpWorld world = vm::make_up_world(plan, task);
+namespace {
+
+// Where a thing is held: above the target; of a target with a region of its own, in that, too.
+std::vector<Vec3> held_at(const plan::Plan& plan, const plan::TaskRecord& task,
+                          const vm::MadeUpWorld& world) {
+  const Vec3& to = world.sample.bodies[world.target].position;
   const double above =
       world.starts[world.source].half.z() + world.starts[world.target].half.z() + kHeldGap;
-  world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
-  world.hold_source();
-  return vm::judge_world(plan, task, success, std::move(world));
+  std::vector<Vec3> places = {to + Vec3(0, 0, above)};
+  for (std::uint32_t r = 0; r < plan.regions().size(); ++r) {
+    if (plan::owner_of(plan.tables(), task, plan.regions()[r]) != world.target) continue;
+    places.push_back(world.sample.bodies[world.target].origin +
+                     to_vec(plan::box_of(plan.tables(), r).middle));
+  }
+  return places;
+}
+
+}  // namespace
+
+Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return false;
+  const vm::MadeUpWorld still = vm::make_up_world(plan, task);
+  for (const Vec3& place : held_at(plan, plan.tasks()[task], still)) {
+    vm::MadeUpWorld world = still;
+    world.put(world.source, place);
+    world.hold_source();
+    PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
+    if (passes) return true;
+  }
+  return false;
 }
 
 namespace {
@@ -132,9 +155,8 @@ std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t tas
         for (const std::uint16_t body : {world.source, world.target})
           world.press_down(body, world.surface);
       } else {
-        const double above =
-            world.starts[world.source].half.z() + world.starts[world.target].half.z() + kHeldGap;
-        world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
+        // In its region, where it has one.
+        world.put(world.source, held_at(plan, plan.tasks()[task], world).back());
         world.hold_source();
       }
     }

@@ -23,7 +23,8 @@ Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint
 Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
 // Whether metric `success` is true of a source that was brought over the target and is still held
-// there: both fingers press it, half a millimetre above the target, and nothing else touches it.
+// there: both fingers press it, half a millimetre above the target or in the middle of a region of
+// the target's own, and nothing else touches it.
 Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 // The same of a world in which nothing has moved and objects lie far apart, of a task that measures
 // joints of fixtures: a drawer that is to be opened begins open.

@@ -31,6 +31,12 @@ Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>&
   return {half[up == 0 ? 2 : 0], half[up == 1 ? 2 : 1], half[up]};
 }
 
+// Turned about the vertical alone.
+bool is_upright(const std::array<double, 4>& rotation) {
+  constexpr double kRounding = 1e-9;
+  return std::abs(rotation[1]) < kRounding && std::abs(rotation[2]) < kRounding;
+}
+
 // An object as it is placed, before it comes to rest.
 struct PlacedObject {
   std::uint16_t body = 0;
@@ -74,6 +80,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   if (roles.has_target()) world.target = static_cast<std::uint16_t>(roles.target);
   world.starts.resize(bodies.size());
   world.sample.bodies.resize(bodies.size());
+  world.middles.assign(bodies.size(), Vec3::Zero());
   world.sample.tcp = {0, 0, table + kFar};
   world.sample.joints.resize(robot.drives.count);
   if (!episodes.empty()) {
@@ -90,7 +97,10 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
     } else if (kind == plan::BodyKind::kObject) {
       std::array<double, 4> rotation = {1, 0, 0, 0};
       if (!episodes.empty()) rotation = plan.placements(episodes[0])[i].rotation;
-      world.starts[i].half = half_extents(plan.objects()[bodies[i].index], rotation);
+      const plan::ObjectRecord& object = plan.objects()[bodies[i].index];
+      world.starts[i].half = half_extents(object, rotation);
+      if (is_upright(rotation))
+        world.middles[i] = (Vec3(object.box_min.data()) + Vec3(object.box_max.data())) / 2;
       at = {kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()};
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};

@@ -23,9 +23,13 @@ struct MadeUpWorld {
   std::uint16_t source = 0, target = 0;    // of tasks that have them
   std::uint16_t surface = 0, fixture = 0;  // the fixture 0 where the scene has none
   std::vector<std::uint16_t> fingers;      // each opens along +y
+  std::vector<Vec3> middles;  // of the objects' boxes, from the model's origin; of others 0
 
+  // `at`: the middle of its box. Its model's origin, which regions of its own count from, lies
+  // where the model has it, as long as the object stands upright.
   void put(std::size_t body, const Vec3& at) {
-    sample.bodies[body].position = sample.bodies[body].origin = at;
+    sample.bodies[body].position = at;
+    sample.bodies[body].origin = at - middles[body];
   }
   // Body `a` presses `b`, a < b, straight down.
   void press_down(std::uint16_t a, std::uint16_t b) {

@@ -513,6 +513,28 @@ suite own trained on bridge_v2 { tasks { two }; seeds 42 }
         std::string::npos);
 }
 
+TEST_CASE(
+    "a thing whose model begins at its foot: regions are where it has them, held in one counts") {
+  const Audited own = audit_text(R"(
+object bin {
+  mesh "ramekin"; box (-8cm, -8cm, 0cm) .. (8cm, 8cm, 14cm); density 100kg/m3; friction 0.6; name "bin"
+  category dishware; rest yaw 0deg
+  region inside box (-6cm, -6cm, 1cm) .. (6cm, 6cm, 13cm)
+}
+metrics binned { success = at end within(position(source), target.inside) }
+metrics let_go like binned { success = at end (within(position(source), target.inside) and impulse(source, target) > 0Ns) }
+@allow(ambiguous, "there is one bin")
+task drop like carrot_on_plate { target bin; metrics binned; say "put {the source} in {the target}"; solution { put source in target } }
+task leave like drop { metrics let_go }
+suite bins { tasks { drop, leave }; seeds 0 }
+)");
+  // The middle of what lies in it is below the region's middle, and in the region.
+  for (const char* task : {"drop", "leave"})
+    CHECK_MESSAGE(own.find(Kind::kSolution, task) == nullptr, to_text(own.audit));
+  CHECK(own.find(Kind::kHeld, "drop") != nullptr);
+  CHECK(own.find(Kind::kHeld, "leave") == nullptr);
+}
+
 TEST_CASE("words that nothing is held to are listed with the reason, and counted") {
   const Audited own = audit_text(R"(
 variant kind of carrot_on_plate { say "gently put {the source} on {the target}" }
