@@ -313,6 +313,17 @@ void build_shown(Context& context, Fixture& fixture) {
     const Dimension& wanted = joint->slides ? dim::kLength : dim::kAngle;
     if (shown.value->dimension == wanted) {
       shown.at = shown.value->si();
+      const bool is_always = shown.from_below ? joint->upper <= shown.at : shown.at <= joint->lower;
+      const bool is_never = shown.from_below ? shown.at < joint->lower : joint->upper < shown.at;
+      if (!joint->is_endless && (is_always || is_never)) {
+        context
+            .report(Situation::kJointLimit, shown.value_span,
+                    fmt::format("joint `{}` goes from {:.6g} to {:.6g}: link `{}` is {} seen",
+                                joint->name, joint->lower, joint->upper, shown.link.text,
+                                is_always ? "always" : "never"))
+            .point(joint->slides ? "in m" : "in rad")
+            .help("write a value between the joint's limits");
+      }
     } else {
       context
           .report(Code::P0302, shown.value_span,

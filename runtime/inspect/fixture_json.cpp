@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,10 +13,20 @@ namespace probe::inspect {
 namespace {
 
 // Centimetres or degrees, to a tenth, without a negative zero.
-double shown(const Json& joint, const char* key) {
+double shown(const Json& joint, double position) {
   const bool slides = joint["moves"].get<std::string>() == "slides";
   const double scale = slides ? 100 : 180 / std::numbers::pi;
-  return std::nearbyint(joint[key].get<double>() * scale * 10) / 10 + 0.0;
+  return std::nearbyint(position * scale * 10) / 10 + 0.0;
+}
+double shown(const Json& joint, const char* key) { return shown(joint, joint[key].get<double>()); }
+
+// "4 cm"; "4 to 14 cm" where starts differ in it.
+std::string start_text(const Json& joint) {
+  const bool slides = joint["moves"].get<std::string>() == "slides";
+  const char* unit = slides ? "cm" : "deg";
+  if (!joint.contains("starts")) return fmt::format("{} {}", shown(joint, "start"), unit);
+  return fmt::format("{} to {} {}", shown(joint, joint["starts"]["least"].get<double>()),
+                     shown(joint, joint["starts"]["most"].get<double>()), unit);
 }
 
 // Where a link begins to be seen, in the unit of the joint that decides it.
@@ -36,6 +47,15 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
   const std::vector<double> starts =
       plan::joint_starts_of(plan.tables(), scene, plan.episodes(task)[0]);
+  // A table of starts may begin each elsewhere.
+  std::vector<double> least = starts, most = starts;
+  for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    const std::vector<double> here = plan::joint_starts_of(plan.tables(), scene, episode);
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      least[i] = std::min(least[i], here[i]);
+      most[i] = std::max(most[i], here[i]);
+    }
+  }
   std::size_t next = 0;
   Json all = Json::array();
   for (const std::uint32_t number : plan.fixtures(scene)) {
@@ -51,13 +71,16 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
                                 {"endless", plan::is_endless(joint)},
                                 {"lower", joint.lower},
                                 {"upper", joint.upper},
-                                {"start", starts[next++]},
+                                {"start", starts[next]},
                                 {"friction", joint.friction},
                                 {"damping", joint.damping},
                                 {"stiffness", joint.stiffness},
                                 {"rest", joint.rest}});
       if (!armatures.empty())
         json["joints"].back()["armature"] = armatures[json["joints"].size() - 1];
+      if (least[next] < most[next])
+        json["joints"].back()["starts"] = {{"least", least[next]}, {"most", most[next]}};
+      ++next;
     }
     json["parts"] = Json::array();
     for (const plan::PartRecord& part : plan.parts(fixture)) {
@@ -110,10 +133,8 @@ Json joint_starts_text(const Json& fixtures) {
   Json texts = Json::array();
   for (const Json& fixture : fixtures) {
     for (const Json& joint : fixture["joints"]) {
-      const bool slides = joint["moves"].get<std::string>() == "slides";
-      texts.push_back(fmt::format("{}.{} {} {}", fixture["fixture"].get<std::string>(),
-                                  joint["joint"].get<std::string>(), shown(joint, "start"),
-                                  slides ? "cm" : "deg"));
+      texts.push_back(fmt::format("{}.{} {}", fixture["fixture"].get<std::string>(),
+                                  joint["joint"].get<std::string>(), start_text(joint)));
     }
   }
   return texts;
@@ -132,7 +153,7 @@ std::vector<std::string> fixture_lines(const Json& task) {
       text += joint["endless"].get<bool>()
                   ? std::string(" without end")
                   : fmt::format(" {} .. {} {}", shown(joint, "lower"), shown(joint, "upper"), unit);
-      text += fmt::format(", starts at {} {}", shown(joint, "start"), unit);
+      text += ", starts at " + start_text(joint);
       before = "; ";
     }
     std::string parts;

@@ -13,7 +13,8 @@ namespace probe::inspect {
 // [{fixture, joints: [{joint, moves, lower, upper, start, friction, damping, stiffness, rest}],
 // parts:
 // [{part, name, joint}]}] of the task's scene; m and N, or rad and N m. `start` is where the joint
-// begins in this task. Only parts that the text names.
+// begins in this task's first start, and `starts` {least, most}, where starts differ in it. Only
+// parts that the text names. Where links are seen at times, `shown` [{link, joint, when, at}].
 Json fixtures_of(const plan::Plan& plan, std::uint32_t task);
 // [{region, of, low, high}]: m, in the frame of what they belong to. Of all bodies of the task.
 Json regions_of(const plan::Plan& plan, std::uint32_t task);

@@ -91,6 +91,10 @@ TEST_CASE("fixture_st: a link without collision that is seen only while a joint 
   CHECK(codes("shown light while glue >= 5cm").find("P0201") != std::string::npos);
   CHECK(codes("shown light while slide >= 5deg").find("P0302") != std::string::npos);
   CHECK(codes("shown light while slide > 5cm").find("P0101") != std::string::npos);
+  // Always, and never.
+  for (const char* at : {">= 0cm", "<= 20cm", ">= 21cm", "<= -1cm"})
+    CHECK(codes(std::string("shown light while slide ") + at).find("P0304") != std::string::npos);
+  CHECK(codes("shown light while ring >= 400deg").find("P0304") == std::string::npos);
   CHECK(codes("shown light while slide >= 5cm; shown light while slide <= 1cm").find("P0203") !=
         std::string::npos);
 }

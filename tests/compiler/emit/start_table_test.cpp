@@ -10,6 +10,7 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
+#include "runtime/inspect/fixture_json.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
@@ -310,6 +311,19 @@ TEST_CASE("what is wrong with a joint's row is told at its cell") {
              "layout given { starts \"starts.csv\"; drop 2cm settle 0.5s; start cabinet.top 3cm }\n"
              "task t like open_the_top_drawer { layout given }\n")
             .find("error[P1503]") != std::string::npos);
+}
+
+TEST_CASE("a drawer that begins elsewhere in each start is shown by where it begins in all") {
+  const plan::Plan plan = plan_with(
+      "start,object,x_m,y_m,value\n0,cabinet.top,,,0.04\n1,cabinet.top,,,0.14\n",
+      "use \"suite/kitchen.probe\"\n"
+      "layout given { starts \"starts.csv\"; drop 2cm settle 0.5s }\n"
+      "task t like open_the_top_drawer { layout given }\n");
+  const std::uint32_t task = plan.find_task("t").value();
+  const Json fixtures = inspect::fixtures_of(plan, task);
+  const std::string text = inspect::joint_starts_text(fixtures).dump();
+  CHECK_MESSAGE(text.find("cabinet.top 4 to 14 cm") != std::string::npos, text);
+  CHECK(text.find("cabinet.bottom 0 cm") != std::string::npos);
 }
 
 TEST_CASE("what stands in a drawer in one start alone is found there") {
