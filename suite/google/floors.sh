@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# suite/google/floors.sh [FOLDER [POLICY...]]: what visual matching's 216 trials of one colouring give the expert and
+# policies that understand nothing, written to suite/google/floors.csv, a line a family of tasks. The runs are kept in
+# FOLDER; called again it continues them.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+vlaprobe=${VLAPROBE:-$here/../../build/vlaprobe}
+folder=${1:-$here/../../build/google_floors}
+[ $# -gt 0 ] && shift
+policies=${*:-expert null random reach wrong}
+suite=google_one_colouring
+mkdir -p "$folder"
+table=$folder/floors.csv
+root=$("$vlaprobe" build "$here/one_colouring.probe" --suite $suite -o "$folder/$suite.plan" >/dev/null
+  "$vlaprobe" verify "$folder/$suite.plan" --json | sed -n 's/^ *"root": "\([0-9a-f]*\)".*/\1/p')
+printf '# plan %s\nfamily,policy,trials,attempted,success\n' "$root" >"$table"
+for policy in $policies; do
+  # One seed: the starts are the same for all, and only `random` draws.
+  "$vlaprobe" run "$here/one_colouring.probe" --suite $suite --policy "$policy" --seeds 0 --jobs "$(nproc)" -o "$folder/$policy"
+  "$vlaprobe" results "$folder/$policy" --csv | awk -F, -v policy="$policy" '
+    NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+    { family = $1 ~ /^pick_horizontal/ ? "can horizontal" : $1 ~ /^pick_vertical/ ? "can vertical" : $1 ~ /^pick_standing/ ? "can standing" \
+        : $1 ~ /_near_/ ? "move near" : $1 ~ /^open_/ ? "open" : $1 ~ /^close_/ ? "close" : "apple"
+      if (!(family in trials)) order[++families] = family
+      ++trials[family]; attempted[family] += $column["invalid"] == ""; success[family] += $column["success"] == "true" }
+    END { for (i = 1; i <= families; ++i) { f = order[i]
+      printf "%s,%s,%d,%d,%d\n", f, policy, trials[f], attempted[f], success[f] } }' >>"$table"
+done
+mv "$table" "$here/floors.csv"
