@@ -133,10 +133,11 @@ struct PutThing {
 // How one of several things is, instead of as it should be.
 enum class Amiss : std::uint8_t { kNothing, kBeside, kHeld };
 
-// Worlds one after the other, the first with nothing put, the last with all, one of them amiss.
+// Worlds one after the other, the first with nothing put, the last with all, one of them amiss;
+// `place`: which of held_at.
 std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t task,
-                                       std::span<const PutThing> puts, std::size_t odd,
-                                       Amiss amiss) {
+                                       std::span<const PutThing> puts, std::size_t odd, Amiss amiss,
+                                       std::size_t place = 0) {
   std::vector<vm::MadeUpWorld> worlds = {vm::make_up_world(plan, task)};
   for (std::size_t count = 1; count <= puts.size(); ++count) {
     vm::MadeUpWorld world = worlds.front();
@@ -155,8 +156,8 @@ std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t tas
         for (const std::uint16_t body : {world.source, world.target})
           world.press_down(body, world.surface);
       } else {
-        // In its region, where it has one.
-        world.put(world.source, held_at(plan, plan.tasks()[task], world).back());
+        const std::vector<Vec3> places = held_at(plan, plan.tasks()[task], world);
+        world.put(world.source, places[std::min(place, places.size() - 1)]);
         world.hold_source();
       }
     }
@@ -205,9 +206,15 @@ Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
           vm::judge_worlds(plan, task, success, worlds_of(plan, task, puts, i, Amiss::kBeside)));
       found.beside = found.beside || beside;
     }
-    PROBE_ASSIGN(const bool held, vm::judge_worlds(plan, task, success,
-                                                   worlds_of(plan, task, puts, i, Amiss::kHeld)));
-    found.held = found.held || held;
+    vm::MadeUpWorld still = vm::make_up_world(plan, task);
+    still.source = puts[i].object;
+    still.target = static_cast<std::uint16_t>(puts[i].place.to);
+    const std::size_t places = held_at(plan, record, still).size();
+    for (std::size_t place = 0; place < places && !found.held; ++place) {
+      PROBE_ASSIGN(found.held,
+                   vm::judge_worlds(plan, task, success,
+                                    worlds_of(plan, task, puts, i, Amiss::kHeld, place)));
+    }
   }
   return found;
 }

@@ -60,10 +60,14 @@ void check_horizons(const Model& model, Reporter& reporter) {
             "`{}` has the {:g} steps of `{}`: {:.3g}s at {:g}Hz there, {:.3g}s at {:g}Hz here",
             task.name, steps, sayer->name, steps / there, there, steps / here, here));
     said.label(task.horizon_span, "said here");
-    said.help(
-        fmt::format("write `horizon {:g} steps`, the same time, or what `{}` needs; `horizon {:.4g}s` "
-                    "is the same at any rate",
-                    meant, model.robots[model.scenes[task.scene].robot].name, steps / there));
+    // Rounded down, so that the time has no step more.
+    const double time = std::floor(steps / there * 1e4) / 1e4;
+    const bool is_kept = std::ceil(time * there - 1e-9) == steps;
+    said.help(fmt::format("write `horizon {:g} steps`, the same time, or what `{}` needs{}", meant,
+                          model.robots[model.scenes[task.scene].robot].name,
+                          is_kept
+                              ? fmt::format("; `horizon {:.10g}s` is the same at any rate", time)
+                              : std::string()));
     said.cause = cause_of(task.horizon_span, {model.scenes[task.scene].name});
   }
 }

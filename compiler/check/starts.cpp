@@ -67,7 +67,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
   // Tasks share lists of starts; what was fine for one in its scene is fine for the next, and what
   // a table of starts has is said of the first task that begins so.
   using Where = std::pair<SceneId, std::vector<double>>;
-  std::map<const Start*, std::set<Where>> stands_in;
+  std::map<const Start*, std::map<Where, bool>> stands_in;  // whether nothing was said
   // With whether nothing at all was said of them.
   std::map<const Start*, std::map<std::pair<Where, std::vector<CameraId>>, bool>> fine_in;
   std::vector<bool> fine(model.tasks.size(), false);
@@ -108,12 +108,15 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
              (!starts.layout.given.empty() && reporter.diagnostics.error_count() == errors);
     };
     bool is_reached = true;
-    if (!task.motions.empty() || !stands.contains(where)) {
+    const auto stood = stands.find(where);
+    if (task.motions.empty() && stood != stands.end()) {
+      if (!stood->second) silence.hold_back();
+    } else {
       check_overlap(starts);
       if (!is_immediate) check_travel(starts, travels);
       // What lies beside the table is out of reach and out of view as well.
       is_reached = check_surface(starts) && check_reach(starts, arms);
-      if (is_settled()) stands.insert(where);
+      if (is_settled()) stands.insert({where, reporter.diagnostics.size() == before});
     }
     if (is_reached) check_frame(starts, lookouts);
     if (!is_immediate) check_motion(starts, travels);

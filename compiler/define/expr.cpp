@@ -143,7 +143,10 @@ ExprRef ExprReader::read_node(const Span& span, const syntax::ExprName& name) {
   for (const MeasureInfo& measure : all_measures()) {
     if (measure.params.empty()) candidates.push_back(measure.name);
   }
-  report_unknown(context_.diagnostics, "name", name.name, candidates);
+  Diagnostic& unknown = report_unknown(context_.diagnostics, "name", name.name, candidates);
+  if (name.name.text == "success")
+    unknown.help(
+        "no metric reads another: what several share is a `predicate`, which each of them calls");
   return poison(span);
 }
 

@@ -278,14 +278,19 @@ bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::a
 
 namespace {
 
-// Whether both act and are felt alike.
+// Whether both act, are felt and are seen alike.
 bool acts_alike(const Fixture& a, const Fixture& b) {
   const auto same_joint = [](const Fixture::Joint& x, const Fixture::Joint& y) {
     return x.name == y.name && x.friction == y.friction && x.damping == y.damping &&
            x.stiffness == y.stiffness && x.rest == y.rest && x.armature == y.armature;
   };
+  const auto same_shown = [](const Fixture::Shown& x, const Fixture::Shown& y) {
+    return x.link.text == y.link.text && x.index == y.index && x.from_below == y.from_below &&
+           x.at == y.at;
+  };
   return a.urdf.text == b.urdf.text && a.turn == b.turn && a.friction == b.friction &&
-         std::ranges::equal(a.joints, b.joints, same_joint);
+         std::ranges::equal(a.joints, b.joints, same_joint) &&
+         std::ranges::equal(a.shown, b.shown, same_shown);
 }
 
 }  // namespace

@@ -150,7 +150,8 @@ void Remembered::begin(const Context& context) {
 
 // Texts that come again, such as one before an edit that is taken back, are met again.
 void Remembered::drop_old() {
-  constexpr std::size_t kMost = 200'000, kMostStarts = 5'000;
+  constexpr std::size_t kMost = 200'000, kMostLists = 5'000;
+  constexpr std::size_t kMostStarts = 200'000;  // of all lists: some hundred bytes each
   const auto is_old = [&](std::uint64_t met) { return met + 1 < analysis_; };
   const auto drop = [&](auto& all, std::size_t most) {
     if (all.size() <= most) return;
@@ -162,7 +163,9 @@ void Remembered::drop_old() {
   drop(followed_, kMost);
   drop(compared_, kMost);
   drop(choices_, kMost);
-  drop(starts_, kMostStarts);
+  std::size_t starts = 0;
+  for (const auto& [key, list] : starts_) starts += list.first.size();
+  drop(starts_, starts > kMostStarts ? 0 : kMostLists);
 }
 
 const Key& Remembered::words_key(const Model& model, TemplateId say) {
@@ -245,6 +248,7 @@ Key Remembered::key_of(const Model& model, const Task& task) {
   out.add(layouts_[static_cast<std::size_t>(task.layout)]);
   out.add_id(task.metrics);
   out.add(light_key(model, light_of(model, task)));
+  out.add(std::uint64_t{task.light != LightId::kNone});  // its own is an axis, its scene's is none
   out.add(std::uint64_t{task.cameras.size()});
   for (const Task::OtherCamera& other : task.cameras) {
     is_known = is_known && is_declared(other.camera, cameras_);

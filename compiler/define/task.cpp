@@ -36,7 +36,7 @@ std::string missing_statements(const Task& task) {
       {task.target != ObjectId::kNone || is_free, "target"},
       {task.metrics != MetricsId::kNone, "metrics"},
       {task.say != TemplateId::kNone, "say"},
-      {task.horizon != 0 || (task.horizon_time && task.abstract), "horizon"},
+      {task.horizon != 0 || task.horizon_time, "horizon"},
   };
   std::string missing;
   for (const auto& [there, name] : wanted) {

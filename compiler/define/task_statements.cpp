@@ -378,6 +378,13 @@ struct TaskReader {
     task.horizon = 0;
     const auto time = bound(std::get<syntax::Quantity>(stmt.how_long));
     if (!time) return;
+    if (time->unit == syntax::Unit::kNone) {
+      const std::string number(context.sources.text(time->span));
+      context.report(Code::P0302, time->span, "expected a time or `steps`, found a number")
+          .help("write `" + number + " steps`, or a time with its unit: `12s`");
+      poisoned = true;
+      return;
+    }
     task.horizon_time = read_quantity(context, *time, dim::kTime,
                                       "`horizon` takes a time, or a number of `steps`");
     poisoned = poisoned || !task.horizon_time;

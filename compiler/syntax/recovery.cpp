@@ -88,11 +88,15 @@ bool Parser::fail_blank_before_unit() {
 // What was likely meant where a task's statement goes on: several things in a role of one, and words
 // without quotes.
 std::string_view Parser::statement_advice() const {
-  if (prev_ == kNoToken || on_new_line_) return {};
+  if (prev_ == kNoToken) return {};
   std::uint32_t before = prev_;
   while (before > 0 && is_trivia(tokens_[--before].kind)) {
   }
   const std::string_view word = text_at(before);
+  const bool wants_block =
+      expected_count_ > 0 && expected_[expected_count_ - 1].kind == TokenKind::kLeftBrace;
+  if (wants_block && word == "like") return "a copy has a block, too, if only an empty one: `{ }`";
+  if (on_new_line_) return {};
   if (raw_kind() == TokenKind::kComma && (word == "source" || word == "target"))
     return "one thing fills it; `role goods: set` declares a role that several fill: `goods a, b`";
   if (raw_kind() == TokenKind::kIdent && word == "say")

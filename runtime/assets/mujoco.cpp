@@ -294,8 +294,7 @@ class Conversion {
     while (joint < asset_.joints.size() && thing_.links[joint + 1].joint->name != glow.joint)
       ++joint;
     if (joint == asset_.joints.size())
-      return Failure{Fault::kAsset, "no joint `" + glow.joint + "`, which is to show a site",
-                     options_.file};
+      return left_out("no joint `" + glow.joint + "`, which is to show a site");
     for (std::size_t i = 0; i < thing_.links.size(); ++i) {
       for (const Placed<mjcf::Site>& placed : thing_.links[i].sites) {
         if (placed.it->name != glow.site) continue;
@@ -316,7 +315,7 @@ class Conversion {
         PROBE_ASSIGN(std::string seen, seen_link(model_, link, {geom.group}, described.name,
                                                  meshes_, pictures_, asset_.notes));
         if (seen.empty())
-          return Failure{Fault::kAsset, "site `" + glow.site + "` is clear", options_.file};
+          return left_out("site `" + glow.site + "`, which is to be shown, is clear");
         add_file(below + "/" + described.glb, std::move(seen));
         text.glows.push_back(
             {described.name, asset_.joints[joint].name, asset_.joints[joint].slides, glow.from});
@@ -324,8 +323,11 @@ class Conversion {
         return {};
       }
     }
-    return Failure{Fault::kAsset, "no site `" + glow.site + "`, which is to be shown",
-                   options_.file};
+    return left_out("no site `" + glow.site + "`, which is to be shown");
+  }
+  Status left_out(const std::string& why) {
+    asset_.notes.push_back(options_.file + ": " + why);
+    return {};
   }
 
   static std::string free_name(const std::string& wanted, const std::string& suffix,

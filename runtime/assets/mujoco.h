@@ -104,7 +104,7 @@ struct MujocoAsset {
 // asset's frame, so poses of a simulation's state are poses of ours. Bodies without joints are one
 // with what carries them. Fails (kAsset, where = FILE:LINE) as mjcf::read_model does, on a mesh or
 // texture that is missing or no mesh or picture, and on what cannot be made: two joints of one
-// body, a change or a glow of what is not there, a ball joint, a hinge that moves an object's part,
+// body, a change of what is not there, a ball joint, a hinge that moves an object's part,
 // nothing that is felt.
 Result<MujocoAsset> convert_mujoco(const MujocoOptions& options);
 

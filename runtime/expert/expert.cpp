@@ -64,7 +64,7 @@ class Expert final : public policy::Policy {
   void end(const policy::EpisodeEnd&) override {
     if (!started_ || !options_.close || !lack_.empty()) return;
     // The last one keeps still when it is done.
-    if (goes_under_ && under_.keeps()) return;
+    if (goes_under_ && under_.keeps() && skill_ + 1 == solution_.size()) return;
     const bool is_over = solution_.empty() || (skill_ + 1 == solution_.size() && !moves_joint())
                              ? hand_.is_over()
                              : skill_ >= solution_.size();
@@ -266,8 +266,11 @@ class Expert final : public policy::Policy {
           continue;
         }
         if (goes_under_) {
-          if (const auto action = under_.act(scene, means.view, *reach_, servo_)) return *action;
-          note(under_.lack());
+          const auto action = under_.act(scene, means.view, *reach_, servo_);
+          // What was picked up stays in the hand until the next skill, if there is one.
+          const bool goes_on = under_.keeps() && skill_ + 1 < solution_.size();
+          if (action && !goes_on) return *action;
+          if (options_.close && !goes_on) note(under_.lack());
           ++skill_;
           skill_begun_ = goes_under_ = false;
           continue;

@@ -154,8 +154,11 @@ std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t t
     carried = carried || carrier != nullptr;
     Vec3 at = one.centre;
     at.z() = one.rest;
-    world.put(one.body, at);
+    const plan::ObjectRecord& object = plan.objects()[bodies[one.body].index];
     world.sample.bodies[one.body].rotation = one.rotation;
+    world.middles[one.body] =
+        one.rotation * Vec3((Vec3(object.box_min.data()) + Vec3(object.box_max.data())) / 2);
+    world.put(one.body, at);
     world.starts[one.body].position = at;
     // What is above presses down, whichever of the two has the lower number.
     const double down = one.body < below ? -kMadeUpContact : kMadeUpContact;

@@ -85,6 +85,20 @@ TEST_CASE("a length without a unit") {
   CHECK(said.says("did you mean `-16cm`?"));
 }
 
+TEST_CASE("a copy without its braces, a horizon without steps, a metric that reads another") {
+  const auto helps = [](const std::string& text, const std::string& help) {
+    const Said said(text);
+    CHECK_MESSAGE(said.text().find("= help: " + help) != std::string::npos, said.text());
+  };
+  helps("object can_two like coke_can\n", "a copy has a block, too, if only an empty one: `{ }`");
+  helps("layout twenty like grid_24\ntask t like carrot_on_plate { layout twenty }\n",
+        "a copy has a block, too, if only an empty one: `{ }`");
+  helps("variant t of carrot_on_plate { horizon 60 }\n",
+        "write `60 steps`, or a time with its unit: `12s`");
+  helps("metrics m { success = at end on_top_of(source, target)\n  alone = at end not success }\n",
+        "no metric reads another: what several share is a `predicate`, which each of them calls");
+}
+
 TEST_CASE("a size written without blanks") {
   const Said said("layout l like grid_24 { cells c = grid 2x2 at (0cm, 0cm) spread (1cm, 1cm) }\n");
   CHECK(said.first().code == Code::P0301);

@@ -57,9 +57,9 @@ TEST_CASE("a horizon without unit, of no length or too long is told") {
   const auto said = [](const std::string& horizon) {
     return test::analyze_with_suite("task t like red_on_tray { horizon " + horizon + " }\n")->said();
   };
-  CHECK_MESSAGE(said("60").find("`horizon` takes a time, or a number of `steps`") != std::string::npos,
+  CHECK_MESSAGE(said("60").find("expected a time or `steps`, found a number") != std::string::npos,
                 said("60"));
-  CHECK_MESSAGE(said("60").find("`60s`") != std::string::npos, said("60"));
+  CHECK_MESSAGE(said("60").find("write `60 steps`") != std::string::npos, said("60"));
   CHECK_MESSAGE(said("0s").find("expected a horizon between 1 and") != std::string::npos, said("0s"));
   CHECK_MESSAGE(said("1000000s").find("a control step is 200ms here") != std::string::npos,
                 said("1000000s"));

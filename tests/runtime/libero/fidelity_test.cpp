@@ -375,7 +375,8 @@ TEST_CASE("the starts of a task that is not in the import are missed") {
   CHECK(starts.others[0].ends_with(": is not in the import"));
 }
 
-TEST_CASE("a recorded task that the import lacks is a row of its own, and no row's measure") {
+TEST_CASE(
+    "an import that has none of the recorded tasks is refused, and lacks the folder's by name") {
   const test::SmallFolder folder;
   REQUIRE(folder.import().ok());
   folder.write("records/libero_tasks.json", tasks_json("fill the drawer and close it"));

@@ -83,17 +83,19 @@ TEST_CASE("a row and its remark are of one moment, while another process writes 
     ResultRow row = row_of(0);
     row.steps = 1 + turn % 2;
     if (turn % 2 == 1) row.remark = "the second";
-    REQUIRE(store_episode(store, row).ok());
+    return store_episode(store, row).ok();
   };
   auto store = Store::open(dir, record_of(), plan_bytes());
   REQUIRE(store.ok());
-  put(**store, 0);
-  std::atomic<bool> is_over = false;
+  REQUIRE(put(**store, 0));
+  std::atomic<int> read = 0;
+  std::atomic<bool> is_over = false, is_written = true;
   std::thread writer([&] {
-    for (int turn = 1; turn < 200; ++turn) put(**store, turn);
+    for (int turn = 1; turn < 200 || (read <= 10 && turn < 20'000); ++turn)
+      is_written = put(**store, turn) && is_written;
     is_over = true;
   });
-  int read = 0, torn = 0;
+  int torn = 0;
   while (!is_over || read == 0) {
     const auto rows = read_results(dir);
     if (!rows) continue;  // busy
@@ -101,6 +103,7 @@ TEST_CASE("a row and its remark are of one moment, while another process writes 
     torn += (rows->at(0).steps == 2) != rows->at(0).remark.has_value();
   }
   writer.join();
+  CHECK(is_written);
   CHECK(read > 10);
   CHECK(torn == 0);
 }
