@@ -201,3 +201,25 @@ TEST_CASE("what is remembered of tasks is what a new server finds, whatever word
     typist.compare("the end");
   }
 }
+
+TEST_CASE("a task's own light is an axis that its scene's is not, as it comes and goes") {
+  const auto text = [](const std::string& own) {
+    return "use \"intact.probe\"\nlight lit2 { ambient 0.9 }\nscene table2 like table { robot widowx at "
+           "(14.7cm, 5.8cm, 87cm) yaw 180deg; light lit2 }\nvariant v of carrot_on_plate { scene table2" +
+           own + " }\nsuite s trained on bridge_v2 { tasks { v }; seeds 42 }\n";
+  };
+  const std::string path = kSuite + "/own_light.probe", light = "; light lit2";
+  Editor editor(kSuite, std::chrono::hours(1));
+  editor.open(path, text(""));
+  told(editor);
+  const std::size_t column = std::string("variant v of carrot_on_plate { scene table2").size();
+  const Json at = {{"line", 3}, {"character", column}};
+  const Json end = {{"line", 3}, {"character", column + light.size()}};
+  editor.change(path, at, at, light);
+  const auto with = told(editor);
+  CHECK(with == told_cold({{path, text(light)}}));
+  editor.change(path, at, end, "");
+  const auto without = told(editor);
+  CHECK(without == told_cold({{path, text("")}}));
+  CHECK(with != without);
+}
