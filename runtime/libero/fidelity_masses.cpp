@@ -123,7 +123,11 @@ Result<FidelityRow> masses_row(Imported& imported, const Records& records) {
       const std::string cls = said["cls"].text();
       if (!seen.insert(cls).second) continue;
       for (const robot::Link& link : fixture.parts.model.links) {
-        if (link.parent_joint < 0) continue;
+        // What is fixed to another is a part of it there, whatever it is called.
+        if (link.parent_joint < 0 ||
+            fixture.parts.model.joints[static_cast<std::size_t>(link.parent_joint)].kind ==
+                robot::JointKind::kFixed)
+          continue;
         for (const Json& wanted : classes[cls]["compiled_bodies"]) {
           if (!wanted["name"].text().ends_with("_" + link.name) ||
               wanted["mass"].get<double>() == 0)
