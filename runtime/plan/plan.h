@@ -69,10 +69,10 @@ class Plan {
   const DampingRecord* damping(const ObjectRecord& object) const {
     return object.damping.count == 0 ? nullptr : &tables_.dampings[object.damping.first];
   }
-  // By joint; empty: none has any.
   std::span<const ShownRecord> shown(const FixtureRecord& fixture) const {
     return slice_of(tables_.shown, fixture.shown);
   }
+  // By joint; empty: none has any.
   std::span<const double> armatures(const FixtureRecord& fixture) const {
     return slice_of(tables_.reals, fixture.armatures);
   }
