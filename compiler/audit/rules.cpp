@@ -157,7 +157,7 @@ std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t tas
           world.press_down(body, world.surface);
       } else {
         const std::vector<Vec3> places = held_at(plan, plan.tasks()[task], world);
-        world.put(world.source, places[std::min(place, places.size() - 1)]);
+        world.put(world.source, places[place]);
         world.hold_source();
       }
     }

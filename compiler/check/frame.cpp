@@ -29,6 +29,12 @@ void Lookout::look(const Model& model, const Scene& scene, const std::vector<Vie
   }
 }
 
+std::string Lookout::where(double out) {
+  if (out >= kBehind) return "lies behind";
+  return "lies " + std::to_string(static_cast<long>(std::ceil(out))) +
+         " pixels outside the image of";
+}
+
 std::size_t Lookout::Hash::operator()(const Key& key) const {
   std::uint64_t hash = 0;
   for (const double number : key) {
@@ -66,7 +72,6 @@ void check_frame(const TaskStarts& starts, Lookouts& lookouts) {
   if (lookout.camera() == nullptr || lookout.jitters()) lookout.look(starts.model, scene, views, 0);
   if (lookout.camera() == nullptr) return;
   const Camera& camera = *lookout.camera();
-  constexpr double kBehind = Lookout::kBehind;
   double most = 0;
   std::size_t bad = 0, all = 0, episode = 0;
   const Start::Placed* worst = nullptr;
@@ -84,15 +89,11 @@ void check_frame(const TaskStarts& starts, Lookouts& lookouts) {
     }
   }
   if (worst == nullptr) return;
-  const std::string how = most < kBehind
-                              ? "lies " + std::to_string(static_cast<long>(std::ceil(most))) +
-                                    " pixels outside the image of"
-                              : "lies behind";
-  Diagnostic& said = starts.reporter.report(Situation::kOutOfFrame, starts.place({worst->object}),
-                                            "`" + starts.object(*worst).name + "` " + how + " `" +
-                                                camera.name + "` in `" + starts.task.name + "`; " +
-                                                std::to_string(bad) + " of " + std::to_string(all) +
-                                                " objects are mostly out of view in this task");
+  Diagnostic& said = starts.reporter.report(
+      Situation::kOutOfFrame, starts.place({worst->object}),
+      "`" + starts.object(*worst).name + "` " + Lookout::where(most) + " `" + camera.name +
+          "` in `" + starts.task.name + "`; " + std::to_string(bad) + " of " + std::to_string(all) +
+          " objects are mostly out of view in this task");
   said.severity = Severity::kWarning;
   said.cause = cause_of(starts.layout.span, {camera.name, starts.object(*worst).name});
   said.point("episode " + std::to_string(episode) + ": " + at(starts.object(*worst), *worst))

@@ -63,6 +63,8 @@ class Travels {
 class Lookout {
  public:
   static constexpr double kBehind = 1e9;  // px
+  // "lies 12 pixels outside the image of", "lies behind": what stands before a camera's name.
+  static std::string where(double out);
 
   // As they stand in one start.
   void look(const Model& model, const Scene& scene, const std::vector<View>& views,

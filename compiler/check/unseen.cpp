@@ -1,7 +1,6 @@
 // P0505 as a warning: a part of a fixture that a task speaks of, outside the image of every camera
 // that does not move, where the task begins.
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 #include <tuple>
@@ -56,13 +55,10 @@ class UnseenChecker {
     const Span& said_at = index < task.role_span.size() ? task.role_span[index] : task.span;
     const Camera& camera = model_.cameras[views_of(model_, task).front().camera];
     const std::string& name = model_.objects[id].name;
-    const std::string how =
-        out < Lookout::kBehind
-            ? "lies " + std::to_string(static_cast<long>(std::ceil(out))) + " pixels outside the image of"
-            : "lies behind";
     Diagnostic& said = reporter_.report(
         Situation::kOutOfFrame, task.place(said_at.is_none() ? task.span : said_at),
-        "`" + name + "`, of which `" + task.name + "` speaks, " + how + " `" + camera.name + "`" +
+        "`" + name + "`, of which `" + task.name + "` speaks, " + Lookout::where(out) + " `" +
+            camera.name + "`" +
             (views_of(model_, task).size() > 1 ? ", and no other camera that stands still sees it"
                                                : ""));
     said.severity = Severity::kWarning;

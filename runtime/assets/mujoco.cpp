@@ -295,36 +295,42 @@ class Conversion {
       ++joint;
     if (joint == asset_.joints.size())
       return left_out("no joint `" + glow.joint + "`, which is to show a site");
+    const auto [parent, site] = find_site(glow.site);
+    if (site == nullptr) return left_out("no site `" + glow.site + "`, which is to be shown");
+    mjcf::Geom& geom = glows_.emplace_back();
+    geom.shape = site->it->shape;
+    geom.size = site->it->size;
+    geom.rgba = site->it->rgba;
+    geom.group = site->it->group;
+    geom.contype = geom.conaffinity = 0;
+    geom.at = site->it->at;
+    MujocoLink& link = glow_links_.emplace_back();
+    link.parent = parent;
+    link.geoms.push_back({&geom, site->pose});
+    DescribedLink described;
+    described.link = &link;
+    described.name = free_name(glow.site, "_glow", taken);
+    described.glb = "meshes/" + described.name + ".glb";
+    PROBE_ASSIGN(std::string seen, seen_link(model_, link, {geom.group}, described.name, meshes_,
+                                             pictures_, asset_.notes));
+    if (seen.empty()) return left_out("site `" + glow.site + "`, which is to be shown, is clear");
+    add_file(below + "/" + described.glb, std::move(seen));
+    text.glows.push_back(
+        {described.name, asset_.joints[joint].name, asset_.joints[joint].slides, glow.from});
+    links.push_back(std::move(described));
+    return {};
+  }
+
+  // The first of that name, with the link that has it; null where none is called so.
+  std::pair<int, const Placed<mjcf::Site>*> find_site(const std::string& name) const {
     for (std::size_t i = 0; i < thing_.links.size(); ++i) {
       for (const Placed<mjcf::Site>& placed : thing_.links[i].sites) {
-        if (placed.it->name != glow.site) continue;
-        mjcf::Geom& geom = glows_.emplace_back();
-        geom.shape = placed.it->shape;
-        geom.size = placed.it->size;
-        geom.rgba = placed.it->rgba;
-        geom.group = placed.it->group;
-        geom.contype = geom.conaffinity = 0;
-        geom.at = placed.it->at;
-        MujocoLink& link = glow_links_.emplace_back();
-        link.parent = static_cast<int>(i);
-        link.geoms.push_back({&geom, placed.pose});
-        DescribedLink described;
-        described.link = &link;
-        described.name = free_name(glow.site, "_glow", taken);
-        described.glb = "meshes/" + described.name + ".glb";
-        PROBE_ASSIGN(std::string seen, seen_link(model_, link, {geom.group}, described.name,
-                                                 meshes_, pictures_, asset_.notes));
-        if (seen.empty())
-          return left_out("site `" + glow.site + "`, which is to be shown, is clear");
-        add_file(below + "/" + described.glb, std::move(seen));
-        text.glows.push_back(
-            {described.name, asset_.joints[joint].name, asset_.joints[joint].slides, glow.from});
-        links.push_back(std::move(described));
-        return {};
+        if (placed.it->name == name) return {static_cast<int>(i), &placed};
       }
     }
-    return left_out("no site `" + glow.site + "`, which is to be shown");
+    return {-1, nullptr};
   }
+
   Status left_out(const std::string& why) {
     asset_.notes.push_back(options_.file + ": " + why);
     return {};

@@ -13,29 +13,28 @@ namespace probe::inspect {
 namespace {
 
 // Centimetres or degrees, to a tenth, without a negative zero.
-double shown(const Json& joint, double position) {
-  const bool slides = joint["moves"].get<std::string>() == "slides";
-  const double scale = slides ? 100 : 180 / std::numbers::pi;
-  return std::nearbyint(position * scale * 10) / 10 + 0.0;
+double shown(const Json& moves, const Json& position) {
+  const double scale = moves.get<std::string>() == "slides" ? 100 : 180 / std::numbers::pi;
+  return std::nearbyint(position.get<double>() * scale * 10) / 10 + 0.0;
 }
-double shown(const Json& joint, const char* key) { return shown(joint, joint[key].get<double>()); }
+double shown(const Json& joint, const char* key) { return shown(joint["moves"], joint[key]); }
+
+const char* unit_of(const Json& joint) {
+  return joint["moves"].get<std::string>() == "slides" ? "cm" : "deg";
+}
 
 // "4 cm"; "4 to 14 cm" where starts differ in it.
 std::string start_text(const Json& joint) {
-  const bool slides = joint["moves"].get<std::string>() == "slides";
-  const char* unit = slides ? "cm" : "deg";
-  if (!joint.contains("starts")) return fmt::format("{} {}", shown(joint, "start"), unit);
-  return fmt::format("{} to {} {}", shown(joint, joint["starts"]["least"].get<double>()),
-                     shown(joint, joint["starts"]["most"].get<double>()), unit);
+  if (!joint.contains("starts")) return fmt::format("{} {}", shown(joint, "start"), unit_of(joint));
+  return fmt::format("{} to {} {}", shown(joint["moves"], joint["starts"]["least"]),
+                     shown(joint["moves"], joint["starts"]["most"]), unit_of(joint));
 }
 
 // Where a link begins to be seen, in the unit of the joint that decides it.
-std::string position_text(const Json& fixture, const Json& shown_link) {
+std::string limit_text(const Json& fixture, const Json& link) {
   for (const Json& joint : fixture["joints"]) {
-    if (joint["joint"] != shown_link["joint"]) continue;
-    const Json at{{"moves", joint["moves"]}, {"at", shown_link["at"]}};
-    const bool slides = joint["moves"].get<std::string>() == "slides";
-    return fmt::format("{} {}", shown(at, "at"), slides ? "cm" : "deg");
+    if (joint["joint"] == link["joint"])
+      return fmt::format("{} {}", shown(joint["moves"], link["at"]), unit_of(joint));
   }
   return "";
 }
@@ -147,12 +146,10 @@ std::vector<std::string> fixture_lines(const Json& task) {
     std::string text = fixture["fixture"].get<std::string>();
     const char* before = ": ";
     for (const Json& joint : fixture["joints"]) {
-      const bool slides = joint["moves"].get<std::string>() == "slides";
-      const char* unit = slides ? "cm" : "deg";
       text += before + joint["joint"].get<std::string>() + " " + joint["moves"].get<std::string>();
-      text += joint["endless"].get<bool>()
-                  ? std::string(" without end")
-                  : fmt::format(" {} .. {} {}", shown(joint, "lower"), shown(joint, "upper"), unit);
+      text += joint["endless"].get<bool>() ? std::string(" without end")
+                                           : fmt::format(" {} .. {} {}", shown(joint, "lower"),
+                                                         shown(joint, "upper"), unit_of(joint));
       text += ", starts at " + start_text(joint);
       before = "; ";
     }
@@ -161,10 +158,10 @@ std::vector<std::string> fixture_lines(const Json& task) {
       parts += (parts.empty() ? "" : ", ") + part["part"].get<std::string>();
     if (!parts.empty()) text += before + ("parts " + parts);
     if (fixture.contains("shown")) {
-      for (const Json& shown : fixture["shown"])
-        text += fmt::format("; {} seen while {} {} {}", shown["link"].get<std::string>(),
-                            shown["joint"].get<std::string>(), shown["when"].get<std::string>(),
-                            position_text(fixture, shown));
+      for (const Json& link : fixture["shown"])
+        text += fmt::format("; {} seen while {} {} {}", link["link"].get<std::string>(),
+                            link["joint"].get<std::string>(), link["when"].get<std::string>(),
+                            limit_text(fixture, link));
     }
     lines.push_back(std::move(text));
   }

@@ -282,7 +282,7 @@ class LiberoImport {
     for (const FixturePose& pose : poses_) {
       const auto suite = std::ranges::find_if(
           tasks_, [&](const auto& one) { return one.first->folder == pose.suite; });
-      if (suite == tasks_.end() && !find_suite(pose.suite))
+      if (suite == tasks_.end() && !is_suite(pose.suite))
         return Failure{Fault::kUsage, "there is no suite `" + pose.suite + "`", pose.where};
       const auto [known, is_new] =
           first.try_emplace({pose.suite, pose.stem, pose.fixture}, pose.where);
@@ -301,7 +301,7 @@ class LiberoImport {
     }
     return {};
   }
-  static bool find_suite(const std::string& name) {
+  static bool is_suite(const std::string& name) {
     return std::ranges::any_of(suites(), [&](const Suite& suite) { return suite.folder == name; });
   }
 

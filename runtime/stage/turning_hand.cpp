@@ -10,7 +10,6 @@ namespace probe::stage {
 namespace {
 
 constexpr int kGrips = 48;       // steps from closed to open
-constexpr double kFacing = 0.9;  // of the cosine between one finger's way and the other's
 constexpr double kPad = 0.045;   // m of the fingers from their tips: what holds things
 constexpr int kPadLooks = 9;
 constexpr double kShorter = 0.012;    // m: tips that are so much higher than at most still reach
@@ -77,7 +76,7 @@ std::optional<double> facing_grip(const robot::Robot& robot, const UrdfParts& pa
     const double facing = hand.way_of(robot.fingers[0]).dot(hand.way_of(robot.fingers[1]));
     if (facing < least) least = facing, best = grip_at(*range, i);
   }
-  return least > -kFacing ? std::nullopt : std::optional(best);
+  return best;
 }
 
 bool measure_turning(const robot::Robot& robot, const UrdfParts& parts, const robot::Tree& tree,

@@ -14,8 +14,8 @@ namespace probe::stage {
 // Whether both fingers' joints turn.
 bool fingers_turn(const robot::Robot& robot);
 
-// The position of the finger joints at which the fingers face one another best; nullopt of fingers
-// that never do. Of two fingers that turn.
+// The position of the finger joints at which the fingers face one another best, however little that
+// is; nullopt where they have no range. Of two fingers that turn.
 std::optional<double> facing_grip(const robot::Robot& robot, const UrdfParts& parts,
                                   const robot::Tree& tree);
 

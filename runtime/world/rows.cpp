@@ -124,14 +124,13 @@ void build_rows(const Parameters& parameters, const std::vector<Articulation>& a
     c.body_k[kTangent2] = build_linear(c, rows, s, c.t2, &rows.rows[kTangent2]);
     if (rows.torsion) c.body_k[kTwist] = build_twist(c, s, &rows.rows[kTwist]);
     // Speculative while apart: only the speed that would cross the gap goes. In overlap a share of
-    // it is pushed out, but for the slop and not faster than the cap.
+    // it is pushed out, but for the slop and not faster than the cap. Into what is soft things sink
+    // as far as the force says: gap + give force = 0 afterwards.
     rows.bias =
-        c.gap > 0
+        c.gap > 0 || rows.give > 0
             ? c.gap / parameters.dt
             : -std::min(parameters.push,
                         parameters.beta * std::max(0.0, -c.gap - parameters.slop) / parameters.dt);
-    // Into what is soft things sink as far as the force says: gap + give force = 0 afterwards.
-    if (rows.give > 0) rows.bias = c.gap / parameters.dt;
     rows.columns = nullptr;
     if ((c.path_a | c.path_b) == 0) continue;
     rows.columns = &problem->columns[used];

@@ -153,15 +153,8 @@ TEST_CASE("what is pulled up, out or off is higher than it began") {
 
 TEST_CASE("a later sentence speaks of what an earlier one did") {
   const auto told = [](const std::string& goal, const std::string& first, const std::string& then) {
-    return first_line_of(
-        analyze_with_suite(std::string(kPlaces) + "metrics m { success = at end " + goal +
-                           " }\nlayout one { " + kApart +
-                           "; orient by rest; drop 10cm settle 0.5s }\n"
-                           "task t like base { layout one; source cube; target tray; metrics m; "
-                           "say \"" +
-                           first + "\"; then say \"" + then +
-                           "\" when height(source) > 95cm }\n")
-            ->said());
+    return told_of_one(goal, first, kApart,
+                       "; then say \"" + then + "\" when height(source) > 95cm");
   };
   CHECK(told("not over(source, target)", "put {the source} on {the target}",
              "take {the source} off {the target}") == "");

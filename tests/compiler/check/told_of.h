@@ -46,14 +46,15 @@ inline const char* const kApart =
 inline const char* const kLying =
     "place target at (0cm, 0cm); place source on target; place towel at (20cm, 0cm)";
 inline std::string told_of_one(const std::string& goal, const std::string& words,
-                               const std::string& places = kApart) {
+                               const std::string& places = kApart,
+                               const std::string& behind = "") {
   return first_line_of(
       analyze_with_suite(std::string(kPlaces) + "metrics m { success = at end " + goal +
                          " }\nlayout one { " + places +
                          "; orient by rest; drop 10cm settle 0.5s }\n"
                          "task t like base { layout one; source cube; target tray; metrics m; "
                          "say \"" +
-                         words + "\" }\n")
+                         words + "\"" + behind + " }\n")
           ->said());
 }
 
