@@ -23,8 +23,7 @@ void Lookout::look(const Model& model, const Scene& scene, const std::vector<Vie
     seen_.push_back(shaken(model.cameras[views[i].camera], shakes, i));
     const auto frustum = Frustum::of(model, scene, seen_.back());
     if (!frustum) continue;
-    if (fixed_.empty()) first_ = &model.cameras[views[i].camera];
-    fixed_.push_back(*frustum);
+    fixed_.push_back({*frustum, &model.cameras[views[i].camera]});
     jitters_ = jitters_ || seen_.back().jitters();
   }
 }
@@ -44,21 +43,25 @@ std::size_t Lookout::Hash::operator()(const Key& key) const {
   return hash;
 }
 
-double Lookout::outside(const Object& object, const Start::Placed& placed) {
+template <typename... Thing>
+Lookout::Out Lookout::least(const Thing&... thing) const {
+  Out least{kBehind, fixed_.front().camera};
+  for (const Fixed& fixed : fixed_) {
+    const double out = fixed.frustum.outside(thing...).value_or(kBehind);
+    if (out < least.pixels) least = {out, fixed.camera};
+  }
+  return least;
+}
+
+Lookout::Out Lookout::outside(const Object& object, const Start::Placed& placed) {
   const auto& [w, x, y, z] = placed.turn.rotation;
   const Key key{static_cast<double>(placed.object), placed.x, placed.y, w, x, y, z};
-  const auto [at, is_new] = known_.try_emplace(key, kBehind);
-  if (!is_new) return at->second;
-  for (const Frustum& frustum : fixed_)
-    at->second = std::min(at->second, frustum.outside(object, placed).value_or(1e10));
+  const auto [at, is_new] = known_.try_emplace(key);
+  if (is_new) at->second = least(object, placed);
   return at->second;
 }
 
-double Lookout::outside(std::span<const scene::Solid> boxes) const {
-  double least = kBehind;
-  for (const Frustum& frustum : fixed_) least = std::min(least, frustum.outside(boxes).value_or(1e10));
-  return least;
-}
+Lookout::Out Lookout::outside(std::span<const scene::Solid> boxes) const { return least(boxes); }
 
 // One warning for the task, of the object that is the farthest out of every camera that does not
 // move.
@@ -69,20 +72,19 @@ void check_frame(const TaskStarts& starts, Lookouts& lookouts) {
   for (const View& view : views) cameras.push_back(view.camera);
   Lookout& lookout = lookouts[{starts.task.scene, std::move(cameras)}];
   // What jitters has another place in each start, and views their own by their names.
-  if (lookout.camera() == nullptr || lookout.jitters()) lookout.look(starts.model, scene, views, 0);
-  if (lookout.camera() == nullptr) return;
-  const Camera& camera = *lookout.camera();
-  double most = 0;
+  if (lookout.fixed() == 0 || lookout.jitters()) lookout.look(starts.model, scene, views, 0);
+  if (lookout.fixed() == 0) return;
+  Lookout::Out most{0, nullptr};
   std::size_t bad = 0, all = 0, episode = 0;
   const Start::Placed* worst = nullptr;
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     if (lookout.jitters() && e > 0) lookout.look(starts.model, scene, views, e);
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
       ++all;
-      const double out = lookout.outside(starts.object(placed), placed);
-      if (out < 1) continue;  // part of a pixel is no loss
+      const Lookout::Out out = lookout.outside(starts.object(placed), placed);
+      if (out.pixels < 1) continue;  // part of a pixel is no loss
       ++bad;
-      if (out <= most) continue;
+      if (out.pixels <= most.pixels) continue;
       most = out;
       episode = e;
       worst = &placed;
@@ -91,13 +93,13 @@ void check_frame(const TaskStarts& starts, Lookouts& lookouts) {
   if (worst == nullptr) return;
   Diagnostic& said = starts.reporter.report(
       Situation::kOutOfFrame, starts.place({worst->object}),
-      "`" + starts.object(*worst).name + "` " + Lookout::where(most) + " `" + camera.name +
+      "`" + starts.object(*worst).name + "` " + Lookout::where(most.pixels) + " `" + most.of->name +
           "` in `" + starts.task.name + "`; " + std::to_string(bad) + " of " + std::to_string(all) +
           " objects are mostly out of view in this task");
   said.severity = Severity::kWarning;
-  said.cause = cause_of(starts.layout.span, {camera.name, starts.object(*worst).name});
+  said.cause = cause_of(starts.layout.span, {most.of->name, starts.object(*worst).name});
   said.point("episode " + std::to_string(episode) + ": " + at(starts.object(*worst), *worst))
-      .label(camera.span, "the camera")
+      .label(most.of->span, "the camera")
       .label(starts.layout.span, "the layout");
 }
 

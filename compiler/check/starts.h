@@ -69,25 +69,36 @@ class Lookout {
   // As they stand in one start.
   void look(const Model& model, const Scene& scene, const std::vector<View>& views,
             std::size_t start);
-  // The first of them; null where none stands still.
-  const Camera* camera() const { return first_; }
+  // How many they are.
+  std::size_t fixed() const { return fixed_.size(); }
   bool jitters() const { return jitters_; }
-  // px, of the camera that it is the least out of; kBehind where it is behind each.
-  double outside(const Object& object, const Start::Placed& placed);
+  // How far something is out of the camera that it is the least out of.
+  struct Out {
+    double pixels = kBehind;  // kBehind where it is behind each
+    const Camera* of = nullptr;
+  };
+  // One camera must stand still.
+  Out outside(const Object& object, const Start::Placed& placed);
   // The same of something that boxes make up, when more than half of their corners are out.
-  double outside(std::span<const scene::Solid> boxes) const;
+  Out outside(std::span<const scene::Solid> boxes) const;
 
  private:
-  const Camera* first_ = nullptr;
+  template <typename... Thing>
+  Out least(const Thing&... thing) const;
+
   bool jitters_ = false;
   std::vector<Camera> seen_;
-  std::vector<Frustum> fixed_;
+  struct Fixed {
+    Frustum frustum;
+    const Camera* camera;  // of the model
+  };
+  std::vector<Fixed> fixed_;
   // What stands where, and how it is turned: a frustum asks nothing else.
   using Key = std::array<double, 7>;
   struct Hash {
     std::size_t operator()(const Key& key) const;
   };
-  std::unordered_map<Key, double, Hash> known_;
+  std::unordered_map<Key, Out, Hash> known_;
 };
 using Lookouts = std::map<std::pair<SceneId, std::vector<CameraId>>, Lookout>;
 

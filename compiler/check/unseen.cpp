@@ -25,16 +25,21 @@ class UnseenChecker {
     for (const View& view : views_of(model_, task)) cameras.push_back(view.camera);
     for (const auto& [role, id] : task.things()) {
       const auto [at, is_new] = known_.try_emplace(
-          {task.scene, cameras, joint_starts_of(model_, task, task.starts.front()), id}, 0.0);
+          {task.scene, cameras, joint_starts_of(model_, task, task.starts.front()), id}, Unseen{});
       if (is_new) at->second = outside(task, model_.objects[id]);
-      if (at->second >= 1) report(task, role, id, at->second);
+      if (at->second.out.pixels >= 1) report(task, role, id, at->second);
     }
   }
 
  private:
-  // px, of the camera that it is the least out of; 0 where it is seen, or where no camera stands
-  // still. The first start's cameras and joints tell.
-  double outside(const Task& task, const Object& thing) {
+  struct Unseen {
+    Lookout::Out out{0, nullptr};
+    std::size_t cameras = 0;  // that stand still
+  };
+
+  // Of nothing where no camera stands still. The first start's cameras and joints tell, and of a
+  // region the part that it belongs to.
+  Unseen outside(const Task& task, const Object& thing) {
     const Scene& scene = model_.scenes[task.scene];
     const TaskStarts starts{model_, reporter_, task, model_.layouts[task.layout]};
     std::vector<scene::Solid> boxes;
@@ -46,25 +51,32 @@ class UnseenChecker {
     }
     Lookout lookout;
     lookout.look(model_, scene, views_of(model_, task), 0);
-    return boxes.empty() || lookout.camera() == nullptr ? 0 : lookout.outside(boxes);
+    if (boxes.empty() || lookout.fixed() == 0) return {};
+    return {lookout.outside(boxes), lookout.fixed()};
   }
 
-  void report(const Task& task, RoleId role, ObjectId id, double out) {
+  void report(const Task& task, RoleId role, ObjectId id, const Unseen& unseen) {
     const About about(reporter_, task.decl_span);
     const auto index = static_cast<std::size_t>(role);
     const Span& said_at = index < task.role_span.size() ? task.role_span[index] : task.span;
-    const Camera& camera = model_.cameras[views_of(model_, task).front().camera];
-    const std::string& name = model_.objects[id].name;
+    const Camera& camera = *unseen.out.of;
+    const Object& thing = model_.objects[id];
+    const Fixture& fixture = model_.fixtures[thing.of->fixture];
+    // A region has no shape that a camera could see.
+    const std::string& part = fixture.parts[thing.of->part].name;
+    const std::string seen =
+        thing.of->is_part()
+            ? "`" + thing.name + "`"
+            : "`" + fixture.name + (part.empty() ? "" : "." + part) + "` with `" + thing.name + "`";
     Diagnostic& said = reporter_.report(
         Situation::kOutOfFrame, task.place(said_at.is_none() ? task.span : said_at),
-        "`" + name + "`, of which `" + task.name + "` speaks, " + Lookout::where(out) + " `" +
-            camera.name + "`" +
-            (views_of(model_, task).size() > 1 ? ", and no other camera that stands still sees it"
-                                               : ""));
+        seen + ", of which `" + task.name + "` speaks, " + Lookout::where(unseen.out.pixels) +
+            " `" + camera.name + "`" +
+            (unseen.cameras > 1 ? ", and no other camera that stands still sees it" : ""));
     said.severity = Severity::kWarning;
-    said.cause = cause_of(model_.scenes[task.scene].span, {camera.name, name});
+    said.cause = cause_of(model_.scenes[task.scene].span, {camera.name, thing.name});
     said.label(camera.span, "the camera")
-        .label(model_.fixtures[model_.objects[id].of->fixture].span, "the fixture")
+        .label(fixture.span, "the fixture")
         .help("move the fixture, or turn the camera: `vlaprobe preview F " + task.name +
               " -o seen.png` shows what it sees");
   }
@@ -72,7 +84,8 @@ class UnseenChecker {
   const Model& model_;
   Reporter& reporter_;
   Travels travels_;
-  std::map<std::tuple<SceneId, std::vector<CameraId>, std::vector<double>, ObjectId>, double> known_;
+  std::map<std::tuple<SceneId, std::vector<CameraId>, std::vector<double>, ObjectId>, Unseen>
+      known_;
 };
 
 }  // namespace

@@ -11,9 +11,10 @@ std::optional<robot::RobotModel> described_by(Context& context, const Spelled& u
   const std::string path = context.asset_root.file(urdf.text);
   Remembered* const remembered = context.reporter.depth.remembered;
   if (const auto* known = remembered ? remembered->described(path) : nullptr) return *known;
+  const Remembered::Key stamp = remembered ? Remembered::stamp_of(path) : Remembered::Key{};
   auto model = robot::load_urdf(path);
   if (model.ok()) {
-    if (remembered != nullptr) remembered->keep_described(path, *model);
+    if (remembered != nullptr) remembered->keep_described(path, stamp, *model);
     return std::move(model).value();
   }
   Diagnostic& said = context

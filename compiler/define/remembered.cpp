@@ -62,8 +62,17 @@ constexpr bool is_of_tasks =
     std::is_same_v<Node, syntax::SuiteDecl> || std::is_same_v<Node, syntax::QuestionsDecl> ||
     std::is_same_v<Node, syntax::LightDecl> || std::is_same_v<Node, syntax::LayoutDecl>;
 
-// Which file of assets it is, and when and how large it was written.
-Key stamp_of(const std::string& path) {
+// The files that a layout's starts are read from.
+void add_starts(KeyMaker& out, const syntax::LayoutDecl& layout, const SourceSet& sources) {
+  for (const syntax::LayoutStmt& stmt : layout.body) {
+    const auto* starts = std::get_if<syntax::StartsStmt>(&stmt);
+    if (starts != nullptr && !starts->file.is_none()) out.add(sources.file(starts->file).text());
+  }
+}
+
+}  // namespace
+
+Key Remembered::stamp_of(const std::string& path) {
   namespace fs = std::filesystem;
   KeyMaker out;
   std::error_code error;
@@ -73,13 +82,17 @@ Key stamp_of(const std::string& path) {
   return out.key();
 }
 
-Key made_of(const Context& context) {
+namespace {
+
+// `stamp`: of a file of URDF, as it was read.
+template <typename Stamp>
+Key made_of(const Context& context, const Stamp& stamp) {
   KeyMaker out;
   for (const std::string& folder : context.asset_root.folders()) out.add(std::string_view(folder));
-  std::set<FileId> trees;
   for (const syntax::File* file : context.files) {
-    trees.insert(file->id);
     for (const syntax::Decl& decl : file->decls) {
+      if (const auto* layout = std::get_if<syntax::LayoutDecl>(&decl.node))
+        add_starts(out, *layout, context.sources);
       const bool is_task = std::visit(
           [](const auto& node) { return is_of_tasks<std::decay_t<decltype(node)>>; }, decl.node);
       if (is_task) continue;
@@ -87,17 +100,12 @@ Key made_of(const Context& context) {
       out.add(context.sources.text(decl.span));
     }
   }
-  // Files of starts.
-  for (std::uint32_t i = 0; i < context.sources.size(); ++i) {
-    const SourceFile& file = context.sources.file(FileId{i});
-    if (!trees.contains(FileId{i}) && !file.name().ends_with(".probe")) out.add(file.text());
-  }
   const Model& model = context.model;
   for (const Robot& robot : model.robots) {
-    if (!robot.urdf.text.empty()) out.add(stamp_of(context.asset_root.file(robot.urdf.text)));
+    if (!robot.urdf.text.empty()) out.add(stamp(context.asset_root.file(robot.urdf.text)));
   }
   for (const Fixture& fixture : model.fixtures) {
-    if (!fixture.urdf.text.empty()) out.add(stamp_of(context.asset_root.file(fixture.urdf.text)));
+    if (!fixture.urdf.text.empty()) out.add(stamp(context.asset_root.file(fixture.urdf.text)));
   }
   // What tasks fill roles with is known before they are read.
   out.add(std::uint64_t{model.has_part_distractors});
@@ -129,7 +137,10 @@ std::vector<Key> layout_keys(const Context& context) {
 void Remembered::begin(const Context& context) {
   const Model& model = context.model;
   ++analysis_;
-  made_of_ = made_of(context);
+  made_of_ = made_of(context, [this](const std::string& path) {
+    const auto at = described_.find(path);
+    return at == described_.end() ? stamp_of(path) : at->second.first;
+  });
   objects_ = model.objects.size();
   scenes_ = model.scenes.size();
   layouts_ = layout_keys(context);
@@ -386,8 +397,9 @@ const robot::RobotModel* Remembered::described(const std::string& path) {
                                                                       : &at->second.second;
 }
 
-void Remembered::keep_described(const std::string& path, const robot::RobotModel& model) {
-  described_.insert_or_assign(path, std::pair(stamp_of(path), model));
+void Remembered::keep_described(const std::string& path, const Key& stamp,
+                                const robot::RobotModel& model) {
+  described_.insert_or_assign(path, std::pair(stamp, model));
 }
 
 void Remembered::begin_checks(const Model& model) {

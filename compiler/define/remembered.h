@@ -69,9 +69,12 @@ class Remembered {
   void keep_starts(LayoutId layout, const std::vector<double>& made_of,
                    const std::vector<Start>& starts);
 
-  // A file of URDF as it was read before; null where it has changed.
+  // Which file of assets it is, and when and how large it was written.
+  static Key stamp_of(const std::string& path);
+  // A file of URDF as it was read before; null where it has changed. The stamp that is kept with it
+  // was taken before it was read.
   const robot::RobotModel* described(const std::string& path);
-  void keep_described(const std::string& path, const robot::RobotModel& model);
+  void keep_described(const std::string& path, const Key& stamp, const robot::RobotModel& model);
 
   // All tasks are defined.
   void begin_checks(const Model& model);

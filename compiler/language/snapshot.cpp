@@ -44,6 +44,23 @@ std::optional<FileId> Snapshot::find(std::string_view path) const {
   return std::nullopt;
 }
 
+bool Snapshot::reads(std::string_view path) const {
+  if (find(path)) return true;
+  const std::optional<FileId> table = sources_.find(path);
+  if (!table) return false;
+  const auto is_read = [&](const syntax::LayoutStmt& stmt) {
+    const auto* starts = std::get_if<syntax::StartsStmt>(&stmt);
+    return starts != nullptr && starts->file == *table;
+  };
+  for (const syntax::ParseResult& file : program_.files) {
+    for (const syntax::Decl& decl : file.file.decls) {
+      const auto* layout = std::get_if<syntax::LayoutDecl>(&decl.node);
+      if (layout != nullptr && std::ranges::any_of(layout->body, is_read)) return true;
+    }
+  }
+  return false;
+}
+
 const syntax::ParseResult* Snapshot::tree(FileId id) const {
   for (const syntax::ParseResult& file : program_.files) {
     if (file.file.id == id) return &file;

@@ -51,6 +51,8 @@ class Snapshot {
   FileId root() const { return root_; }
   // A file of the program by its path.
   std::optional<FileId> find(std::string_view path) const;
+  // Whether it is a file of the program or a table of starts that one names.
+  bool reads(std::string_view path) const;
   const syntax::ParseResult* tree(FileId file) const;
   std::string_view text(FileId file) const { return sources_.file(file).text(); }
   const std::string& path(FileId file) const { return sources_.file(file).name(); }

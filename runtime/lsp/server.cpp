@@ -161,7 +161,7 @@ class TextServer final : public Server {
     const std::string path = path_of(read_text(params, {"textDocument", "uri"}));
     if (method == "initialized") {
       if (client_.watches) {
-        const Json watcher = {{"globPattern", "**/*.probe"}};
+        const Json watcher = {{"globPattern", "**/*.{probe,csv,urdf}"}};
         const Json options = {{"watchers", Json::array({watcher})}};
         const Json registration = {{"id", "texts"},
                                    {"method", "workspace/didChangeWatchedFiles"},

@@ -167,10 +167,10 @@ bool Workspace::refresh() {
     const auto old = std::ranges::find(before, root, [](const auto& program) {
       return program == nullptr ? std::string() : program->root;
     });
-    const bool is_stale =
-        old == before.end() || is_all_touched_ || misses_files(*(*old)->now) ||
-        std::ranges::any_of(touched_,
-                            [&](const std::string& path) { return is_in(*(*old)->now, path); });
+    const bool is_stale = old == before.end() || is_all_touched_ || misses_files(*(*old)->now) ||
+                          std::ranges::any_of(touched_, [&](const std::string& path) {
+                            return (*old)->now->reads(path);
+                          });
     std::unique_ptr<Program> program;
     if (!is_stale) {
       program = std::move(*old);

@@ -62,16 +62,19 @@ MetricKind kind_of(const plan::Plan* plan, const std::string& task, const std::s
           plan::find_readout(plan->metrics(record)[*at].readout)->never};
 }
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
 // "mean 91.2cm, 88cm .. 1.02m", and how often it never came.
 std::string numbers_text(std::vector<double> values, const MetricKind& kind) {
   const auto never = kind.never ? std::erase(values, *kind.never) : 0;
   std::string text;
   if (!values.empty()) {
-    double sum = 0;
-    for (const double value : values) sum += value;
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    text = fmt::format("mean {}, {} .. {}",
-                       quantity(sum / static_cast<double>(values.size()), kind.dimension),
+    text = fmt::format("mean {}, {} .. {}", quantity(mean_of(values), kind.dimension),
                        quantity(*low, kind.dimension), quantity(*high, kind.dimension));
   }
   if (never > 0) text += fmt::format("{}never in {}", text.empty() ? "" : "; ", never);
@@ -144,13 +147,13 @@ std::string unjudged_text(const store::NotAttempted& not_attempted, int invalid,
   return text;
 }
 
-// The mean alone; of a `first`, of those in which it came.
+// The mean alone; of a `first` that did not always come, of those in which it did: "1.2s in 3/24".
 std::string mean_text(std::vector<double> values, const MetricKind& kind) {
+  const std::size_t all = values.size();
   if (kind.never) std::erase(values, *kind.never);
   if (values.empty()) return "never";
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return quantity(sum / static_cast<double>(values.size()), kind.dimension);
+  const std::string mean = quantity(mean_of(values), kind.dimension);
+  return values.size() == all ? mean : fmt::format("{} in {}/{}", mean, values.size(), all);
 }
 
 }  // namespace

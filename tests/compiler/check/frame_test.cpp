@@ -52,3 +52,37 @@ TEST_CASE("a drawer that a task speaks of and its camera does not see is told, w
   CHECK(narrow->said().find("help: move the fixture, or turn the camera") != std::string::npos);
   CHECK(open_it(away, "@allow(out_of_frame, \"why\")\n")->codes() == "");
 }
+
+TEST_CASE("of several cameras the one that stands still and sees the most of it is named") {
+  const auto open_it = [](const std::string& cameras, const std::string& target) {
+    return analyze_with_suite(
+        std::string(test::kChest) +
+        "metrics opened { success = at end slide(chest.drawer) > 8cm }\nlayout alone { drop none "
+        "}\n"
+        "camera hand  like eye { mount arm.wrist at (0cm, 0cm, 1m) look (-1, 0, -0.1) }\n"
+        "camera away  like eye { mount arm.base at (0cm, 0cm, 1m) look (-1, 0, -0.1) }\n"
+        "camera aside like eye { lens 600px, 600px, 3000px, 240px }\n"
+        "scene seen like room { " +
+        cameras +
+        " }\n"
+        "task open_it {\n  scene seen; layout alone; metrics opened; horizon 60 steps; target " +
+        target + "\n  say \"open {the target}\"\n}\n");
+  };
+  const auto said = [&](const std::string& cameras, const std::string& target = "chest.drawer") {
+    const auto a = open_it(cameras, target);
+    REQUIRE_MESSAGE(a->codes() == "P0505", a->said());
+    return a->diagnostics.items().front().message;
+  };
+  // The hand's camera comes first and is not asked.
+  CHECK(said("camera hand, away") ==
+        "`chest.drawer`, of which `open_it` speaks, lies behind `away`");
+  const std::string two = said("camera hand, away, aside");
+  CHECK_MESSAGE(two.starts_with("`chest.drawer`, of which `open_it` speaks, lies "), two);
+  CHECK_MESSAGE(
+      two.ends_with("pixels outside the image of `aside`, and no other camera that stands "
+                    "still sees it"),
+      two);
+  // A region is looked for by the part that it belongs to.
+  CHECK(said("camera away", "chest.inside") ==
+        "`chest.drawer` with `chest.inside`, of which `open_it` speaks, lies behind `away`");
+}

@@ -59,6 +59,25 @@ TEST_CASE("run takes a suite of the file itself, never one of a file that it use
   CHECK(contains(why.out, "cm at step "));
 }
 
+TEST_CASE("in a table of tasks a mean of what did not always come says in how many it did") {
+  Sandbox box;
+  std::string text =
+      "use \"suite/intact.probe\"\n"
+      "metrics measured like put_strict { aside = first y(source) > 0cm; never = first "
+      "height(source) > 2m }\n";
+  std::string names;
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    text += std::string("task ") + name +
+            " like carrot_on_plate { metrics measured; horizon 20 steps }\n";
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  write_file(box / "many.probe", text + "suite many { tasks { " + names + " }; seeds 1 }\n");
+  const Outcome run = box.vlaprobe("run many.probe --policy null -o out --episodes 0-23");
+  REQUIRE_MESSAGE(run.exit == 0, run.err);
+  const Outcome table = box.vlaprobe("results out");
+  CHECK_MESSAGE(contains(table.out, "1 in 12/24  never\n"), table.out);
+}
+
 TEST_CASE("tables of the whole suite fit a screen of 100 columns") {
   Sandbox box;
   for (const char* verb :

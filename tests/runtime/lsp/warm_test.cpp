@@ -223,3 +223,32 @@ TEST_CASE("a task's own light is an axis that its scene's is not, as it comes an
   CHECK(without == told_cold({{path, text("")}}));
   CHECK(with != without);
 }
+
+TEST_CASE("a table of starts is remembered by what it says, whatever its name") {
+  const std::string text =
+      "use \"intact.probe\"\nlayout recorded { starts \"own_starts.probe\"; drop 1cm settle 0.5s "
+      "}\n"
+      "variant v of carrot_on_plate { layout recorded }\n"
+      "suite s trained on bridge_v2 { tasks { v }; seeds 42 }\n";
+  const auto starts = [](const std::string& x) {
+    return "start,object,x_m,y_m,z_m,qw,qx,qy,qz\n0,source,-0.16,0.075,0.9,1,0,0,0\n0,target," + x +
+           ",-0.075,0.9,1,0,0,0\n";
+  };
+  const std::string path = kSuite + "/own.probe", table = kSuite + "/own_starts.probe";
+  Editor editor(kSuite, std::chrono::hours(1));
+  editor.open(table, starts("-0.16"));
+  editor.open(path, text);
+  told(editor);
+  const Json line = {{"line", 2}, {"character", 0}}, end = {{"line", 3}, {"character", 0}};
+  const auto moved = [&](const std::string& x) {
+    editor.change(table, line, end, "0,target," + x + ",-0.075,0.9,1,0,0,0\n");
+    auto found = told(editor);
+    found.erase(lsp::uri_of(table));  // no text of Probe
+    return found;
+  };
+  auto cold = told_cold({{table, starts("9")}, {path, text}});
+  cold.erase(lsp::uri_of(table));
+  const auto far = moved("9");
+  CHECK(far == cold);
+  CHECK(moved("-0.16") != far);
+}
