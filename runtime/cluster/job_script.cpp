@@ -1,6 +1,10 @@
 // The script is for people too: they read it before they submit it.
 #include "runtime/cluster/job_script.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "runtime/base/shell_word.h"
 
 namespace probe::cluster {
@@ -141,6 +145,38 @@ std::string sbatch_option(std::string_view option) {
          sbatch_word(option.substr(value));
 }
 
+// An option's name in full, "--time" of "-t5"; of a short one that stands here for nothing, itself.
+std::string_view long_name(std::string_view option) {
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"-A", "--account"}, {"-M", "--clusters"}, {"-p", "--partition"},
+      {"-q", "--qos"},     {"-t", "--time"},
+  };
+  if (option.starts_with("--")) return option.substr(0, option.find_first_of("= "));
+  for (const auto& [brief, full] : kNames) {
+    if (option.starts_with(brief)) return full;
+  }
+  return option.substr(0, 2);
+}
+
+Status add_options(std::string& text, const std::vector<std::string>& options, const char* flag) {
+  for (const std::string& option : options) {
+    if (has_line_break(option) || !option.starts_with("-"))
+      return usage("`" + option + "` is not one option, as --partition=gpu is", flag);
+    text += "#SBATCH " + sbatch_option(option) + "\n";
+  }
+  return {};
+}
+
+bool says_time(const std::string& option) { return long_name(option) == "--time"; }
+
+// "1-02:30:00", whole minutes.
+std::string time_text(std::int64_t seconds) {
+  const std::int64_t minutes = (seconds + 59) / 60;
+  const std::int64_t days = minutes / (24 * 60);
+  return (days > 0 ? fmt::format("{}-", days) : "") +
+         fmt::format("{:02}:{:02}:00", minutes / 60 % 24, minutes % 60);
+}
+
 }  // namespace
 
 std::string shard_folder(int shard, int shards) {
@@ -182,27 +218,25 @@ Result<std::string> to_text(const JobScript& script) {
   text += "#   join:   " + shell_word(script.program) + " merge " + shell_word(script.out) +
           "/shards/* -o " + shell_word(script.out) + "\n";
   text += "#SBATCH --job-name=vlaprobe\n";
-  const auto add_options = [&](const std::vector<std::string>& options,
-                               const char* flag) -> Status {
-    for (const std::string& option : options) {
-      if (has_line_break(option) || !option.starts_with("-"))
-        return usage("`" + option + "` is not one option, as --partition=gpu is", flag);
-      text += "#SBATCH " + sbatch_option(option) + "\n";
-    }
-    return {};
-  };
+  if (script.time_s > 0 && (std::ranges::any_of(script.sbatch, says_time) ||
+                            std::ranges::any_of(script.server_sbatch, says_time)))
+    return usage("says how much time a task has, and --time-from does, too", "--sbatch");
+  // A heterogeneous job has the time of its first part.
+  const std::string time =
+      script.time_s > 0 ? "#SBATCH --time=" + time_text(script.time_s) + "\n" : "";
   if (script.server_apart) {
-    text += kHead;
-    PROBE_TRY(add_options(script.server_sbatch, "--server-sbatch"));
+    text += kHead + time;
+    PROBE_TRY(add_options(text, script.server_sbatch, "--server-sbatch"));
     text += "#SBATCH hetjob\n#SBATCH --ntasks=" + tasks + "\n#SBATCH --requeue\n";
     if (script.whole_nodes) text += "#SBATCH --ntasks-per-node=1\n";
   } else {
     text += "#SBATCH --array=1-" + tasks + "\n";
     text += kHead;
   }
+  text += script.server_apart ? "" : time;
   text += "#SBATCH --cpus-per-task=" + std::to_string(script.worlds) + "\n";
   if (script.whole_nodes) text += "#SBATCH --exclusive\n";
-  PROBE_TRY(add_options(script.sbatch, "--sbatch"));
+  PROBE_TRY(add_options(text, script.sbatch, "--sbatch"));
   text += "\nout=" + shell_word(script.out) + "\n";
   text += "shards=" + std::to_string(script.tasks) + "\n";
   if (script.server_apart) text += "worlds=" + std::to_string(script.worlds) + "\n";
@@ -224,6 +258,29 @@ Result<std::string> to_text(const JobScript& script) {
   fill("@ask", script.server_apart ? kAskApart : kAsk);
   fill("@flag", script.actor_flag);
   text += body;
+  return text;
+}
+
+Result<std::string> merge_text(const JobScript& script, bool mixed_builds) {
+  std::vector<std::string> options = script.sbatch;
+  std::erase_if(options, [](const std::string& option) {
+    constexpr std::string_view kOfWhom[] = {"--account", "--clusters", "--partition", "--qos",
+                                            "--reservation"};
+    return std::ranges::find(kOfWhom, long_name(option)) == std::end(kOfWhom);
+  });
+  std::string text =
+      "#!/bin/bash\n# Joins the shards that there are, when the job of the shards has ended.\n"
+      "#SBATCH --job-name=vlaprobe-merge\n";
+  text += kHead;
+  PROBE_TRY(add_options(text, options, "--sbatch"));
+  const std::string out = shell_word(script.out);
+  text += "\nout=" + out + "\nexec >>\"$out/slurm/log/merge.txt\" 2>&1\n";
+  text += "echo \"job $SLURM_JOB_ID on $(hostname), $(date '+%F %T')\"\n";
+  // A shard that was killed as it began has no rows.
+  text += "begun=()\nfor rows in \"$out\"/shards/*-of-" + std::to_string(script.tasks) +
+          "/*.sqlite; do [ -e \"$rows\" ] && begun+=(\"${rows%/*}\"); done\n";
+  text += "exec " + shell_word(script.program) + " merge \"${begun[@]}\" -o \"$out\"" +
+          (mixed_builds ? " --mixed-builds" : "") + "\n";
   return text;
 }
 

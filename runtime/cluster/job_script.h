@@ -4,6 +4,7 @@
 // in, text out; submits nothing.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,12 +32,17 @@ struct JobScript {
   std::vector<std::string> server_sbatch;
   std::vector<std::string> run_arguments;  // further words for `vlaprobe run`
   std::vector<std::string> sbatch;         // further options of sbatch, "--partition=gpu"
+  std::int64_t time_s = 0;                 // that each task asks for; 0: the cluster's default
 };
 
 // Fails (kUsage) on what cannot be written down: line breaks in an sbatch option or the
 // server's command, `{port}` in the policy without a server's command, `{host}` without a server
-// apart or the other way round.
+// apart or the other way round, two times.
 Result<std::string> to_text(const JobScript& script);
+
+// The job that joins the shards when the other has ended. Of the options of sbatch it takes those
+// that say who asks and where: account, clusters, partition, qos, reservation.
+Result<std::string> merge_text(const JobScript& script, bool mixed_builds);
 
 // The folder of one shard's run below `out`: "shards/2-of-4".
 std::string shard_folder(int shard, int shards);

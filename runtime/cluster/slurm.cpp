@@ -1,6 +1,9 @@
 // Talks to Slurm by its programs sbatch and squeue.
 #include "runtime/cluster/slurm.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -14,6 +17,8 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/base/percent.h"
+#include "runtime/cluster/measured_time.h"
 #include "runtime/cluster/program.h"
 #include "runtime/cluster/run_words.h"
 #include "runtime/run/selection.h"
@@ -107,8 +112,12 @@ Status wait_for(const std::string& job, const ArrayOptions& options) {
   }
 }
 
-Result<std::string> submit(const fs::path& script) {
-  PROBE_ASSIGN(const ProgramOutput sent, run_program({"sbatch", "--parsable", script.string()}));
+// `after`: number of a job that must have ended before; empty: of none.
+Result<std::string> submit(const fs::path& script, const std::string& after = "") {
+  std::vector<std::string> words = {"sbatch", "--parsable"};
+  if (!after.empty()) words.push_back("--dependency=afterany:" + after);
+  words.push_back(script.string());
+  PROBE_ASSIGN(const ProgramOutput sent, run_program(words));
   if (sent.status != 0) return failed("refused the job: " + trimmed(sent.err), script.string());
   const std::string answer = trimmed(sent.out);  // "17" or "17;cluster"
   const std::string job = answer.substr(0, answer.find(';'));
@@ -233,13 +242,42 @@ class RunWork final : public ArrayWork {
   std::set<EpisodeKey> chosen_;
 };
 
+// Of the task that lacks the most: as long as its episodes took before and half as long again, the
+// server's wait, and five minutes to begin.
+Result<std::int64_t> time_by(const SlurmOptions& options, const RunWork& work) {
+  constexpr std::int64_t kBegin = 300;  // s
+  PROBE_ASSIGN(const MeasuredTime measured, measured_time(options.time_from));
+  PROBE_ASSIGN(const auto lacking,
+               work.missing(absolute_path(options.run.out), options.script.tasks));
+  std::int64_t most = 0;
+  for (const auto& [shard, count] : lacking) most = std::max(most, count);
+  const std::int64_t begin =
+      kBegin + (options.script.server_command.empty() ? 0 : options.script.server_wait_s);
+  const double episodes_s = measured.seconds * static_cast<double>(most) / options.run.jobs;
+  if (options.tell) {
+    options.tell(fmt::format(
+        "each task asks for time as measured: {} episodes of {} s by {} at once, half as much "
+        "again, and {} minutes to begin{}",
+        most, decimal_text(measured.seconds, 1), options.run.jobs, (begin + 59) / 60,
+        measured.worlds == options.run.jobs
+            ? ""
+            : fmt::format(" (measured with {} at once: a server may be slower or faster by that)",
+                          measured.worlds)));
+  }
+  return begin + static_cast<std::int64_t>(std::ceil(1.5 * episodes_s));
+}
+
 }  // namespace
 
 Result<SlurmReport> run_on_slurm(const plan::Plan& plan, const SlurmOptions& options) {
   PROBE_ASSIGN(auto chosen, chosen_episodes(plan, options.run));
   const RunWork work(plan, options.run, std::move(chosen));
+  ArrayOptions array = options;
+  if (!options.time_from.empty()) {
+    PROBE_ASSIGN(array.script.time_s, time_by(options, work));
+  }
   return work_on_slurm(plan, work, options.run.out, options.run.jobs,
-                       options.run.if_changed == run::IfChanged::kContinue, options);
+                       options.run.if_changed == run::IfChanged::kContinue, array);
 }
 
 Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
@@ -261,23 +299,51 @@ Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
   script.worlds = worlds;
   script.run_arguments = work.words();
   PROBE_ASSIGN(const std::string text, to_text(script));
+  PROBE_ASSIGN(const std::string merge, merge_text(script, mixed_builds));
   PROBE_TRY(work.check_same(out));
   std::error_code error;
   fs::create_directories(folder / "log", error);
   if (error) return Failure{Fault::kIo, "cannot be made: " + error.message(), folder.string()};
   PROBE_TRY(write_plan(folder / "suite.plan", plan));
   PROBE_TRY(write_file(report.script, std::as_bytes(std::span(text))));
-  fs::permissions(report.script, fs::perms::owner_exec, fs::perm_options::add, error);
+  PROBE_TRY(write_file((folder / "merge.sh").string(), std::as_bytes(std::span(merge))));
+  for (const fs::path& written : {fs::path(report.script), folder / "merge.sh"})
+    fs::permissions(written, fs::perms::owner_exec, fs::perm_options::add, error);
   if (!options.submit) return report;
 
-  // A job that ended while nobody waited has shards that are not merged yet.
   PROBE_ASSIGN(report.job, job_under_way(folder / "job"));
+  PROBE_ASSIGN(report.merge_job, job_under_way(folder / "merge_job"));
+  if (options.detach && !(report.job.empty() && report.merge_job.empty())) {
+    if (options.tell) {
+      options.tell("nothing is submitted: job " +
+                   (report.job.empty() ? report.merge_job : report.job) + " is under way");
+    }
+    PROBE_ASSIGN(const auto lacking, work.missing(out, options.script.tasks));
+    report.stored = report.total - sum_of(lacking);
+    return report;
+  }
+  // Two that join would be in each other's way.
+  if (!report.merge_job.empty()) {
+    if (!report.job.empty()) PROBE_TRY(wait_for(report.job, options));
+    PROBE_TRY(wait_for(report.merge_job, options));
+    report.job.clear();
+  }
+  // A job that ended while nobody waited has shards that are not merged yet.
   if (report.job.empty()) PROBE_TRY(join(work, options, out, mixed_builds, report));
   PROBE_ASSIGN(auto lacking, work.missing(out, options.script.tasks));
   if (report.job.empty() && !lacking.empty()) {
     PROBE_ASSIGN(report.job, submit(report.script));
     PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
     if (options.tell) options.tell("job " + report.job + " submitted");
+    if (options.detach) {
+      PROBE_ASSIGN(report.merge_job, submit(folder / "merge.sh", report.job));
+      PROBE_TRY(
+          write_file((folder / "merge_job").string(), std::as_bytes(std::span(report.merge_job))));
+      if (options.tell)
+        options.tell("job " + report.merge_job + " joins its shards when it has ended");
+      report.stored = report.total - sum_of(lacking);
+      return report;
+    }
   }
   if (!report.job.empty()) {
     PROBE_TRY(wait_for(report.job, options));

@@ -10,6 +10,7 @@
 
 #include "runtime/base/paths.h"
 #include "runtime/base/printable.h"
+#include "runtime/store/folder_lock.h"
 
 namespace probe::store {
 namespace {
@@ -28,6 +29,22 @@ void distrust(sqlite3* database) {
   sqlite3_limit(database, SQLITE_LIMIT_ATTACHED, 0);
   sqlite3_limit(database, SQLITE_LIMIT_TRIGGER_DEPTH, 0);
   sqlite3_limit(database, SQLITE_LIMIT_LIKE_PATTERN_LENGTH, 100);
+}
+
+// Of the folder that it lies in.
+std::string folder_of(const std::string& path) {
+  const auto end = path.rfind('/');
+  return end == path.npos ? "." : path.substr(0, end);
+}
+
+// Another process writes for a moment; a file system without locks says the same, for ever.
+int wait_for_lock(void* database, int tries) {
+  constexpr int kPause = 20'000, kMostTries = 500;  // us
+  if (tries == 0 && !FolderLock::lack(folder_of(*static_cast<std::string*>(database))).empty())
+    return 0;
+  if (tries >= kMostTries) return 0;
+  ::usleep(kPause);
+  return 1;
 }
 
 }  // namespace
@@ -53,7 +70,8 @@ Result<Database> Database::open(const std::string& path, Access access, std::str
     return Failure{Fault::kStore,
                    std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path};
   }
-  sqlite3_busy_timeout(database.handle_, 10000);
+  database.waits_for_ = std::make_unique<std::string>(path);
+  sqlite3_busy_handler(database.handle_, wait_for_lock, database.waits_for_.get());
   distrust(database.handle_);
   if (access == Access::kWrite) PROBE_TRY(database.execute("pragma synchronous = full"));
   return database;
@@ -69,6 +87,16 @@ Failure Database::failure(Access access) const {
   const std::string said = sqlite3_errmsg(handle_);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     return {Fault::kStore, name() + " cannot be read (" + said + "); " + advice_, path_};
+  if (code == SQLITE_BUSY) {
+    const std::string lack = FolderLock::lack(folder_of(path_));
+    if (!lack.empty()) {
+      return {Fault::kStore,
+              lack +
+                  ", so that another run could change the results while they are read: copy the "
+                  "folder to a disk that has locks, or have this one mounted with them",
+              folder_of(path_)};
+    }
+  }
   return {Fault::kStore,
           std::string("the results cannot be ") +
               (access == Access::kRead ? "read: " : "stored: ") + said,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,6 +34,7 @@ class Database {
   Database(Database&& other) noexcept
       : handle_(std::exchange(other.handle_, nullptr)),
         path_(std::move(other.path_)),
+        waits_for_(std::move(other.waits_for_)),
         advice_(std::move(other.advice_)) {}
   Database& operator=(Database&&) = delete;
 
@@ -53,7 +55,9 @@ class Database {
   Failure failure(Access access) const;
   std::string name() const;  // of the file, without its folder
   sqlite3* handle_ = nullptr;
-  std::string path_, advice_;
+  std::string path_;
+  std::unique_ptr<std::string> waits_for_;  // the path, where SQLite finds it though this is moved
+  std::string advice_;
 };
 
 // A prepared statement: values are bound from left to right, then next() goes from row to row.

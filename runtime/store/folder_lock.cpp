@@ -15,21 +15,21 @@
 namespace probe::store {
 namespace {
 
+// Empty of another error. NFS without its lock service, Lustre without the mount option `flock`,
+// some of FUSE.
+std::string no_locks(int error) {
+  if (error != ENOLCK && error != ENOSYS && error != ENOTSUP && error != EINVAL) return {};
+  return std::string("its file system gives no locks (") + std::strerror(error) + ")";
+}
+
 std::string reason(int error) {
-  switch (error) {
-    case EWOULDBLOCK:
-      return "another run is writing into this folder";
-    // NFS without its lock service, Lustre without the mount option `flock`, some of FUSE.
-    case ENOLCK:
-    case ENOSYS:
-    case ENOTSUP:
-    case EINVAL:
-      return std::string("its file system gives no locks (") + std::strerror(error) +
-             "), so that nothing would keep two runs from writing into it at once; take a folder "
-             "on another file system, or have this one mounted with locks";
-    default:
-      return std::string("the folder cannot be locked: ") + std::strerror(error);
+  if (error == EWOULDBLOCK) return "another run is writing into this folder";
+  if (const std::string lack = no_locks(error); !lack.empty()) {
+    return lack +
+           ", so that nothing would keep two runs from writing into it at once; take a folder on "
+           "another file system, or have this one mounted with locks";
   }
+  return std::string("the folder cannot be locked: ") + std::strerror(error);
 }
 
 }  // namespace
@@ -66,6 +66,20 @@ bool FolderLock::is_taken(const std::string& dir) {
     if (kind == "FLOCK" && place == wanted) return true;
   }
   return false;
+}
+
+// Asked at the lock file: whoever closes a database gives away all locks that the process has on
+// it.
+std::string FolderLock::lack(const std::string& dir) {
+  const int file = ::open((dir + "/lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file < 0) return {};
+  struct flock asked {};
+  asked.l_type = F_RDLCK;
+  asked.l_whence = SEEK_SET;
+  asked.l_len = 1;
+  const int error = ::fcntl(file, F_SETLK, &asked) == 0 ? 0 : errno;
+  ::close(file);
+  return no_locks(error);
 }
 
 FolderLock::~FolderLock() {

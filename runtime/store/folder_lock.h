@@ -21,6 +21,9 @@ class FolderLock {
   // Whether a process of this machine has it now, as /proc/locks says; nobody is kept from taking
   // it.
   static bool is_taken(const std::string& dir);
+  // "its file system gives no locks (No locks available)", of the locks on parts of files that a
+  // database takes; empty: it gives them, or the folder has no lock file to ask at.
+  static std::string lack(const std::string& dir);
   FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
   FolderLock& operator=(FolderLock&&) = delete;
 

@@ -77,7 +77,7 @@ std::string more_ask_options(SharedWords words) {
   if (words == SharedWords::kAsk)
     return "more, in runtime/ask/README.md: " + unsaid_options(words) + "\n";
   return "more, as `ask` has them: --questions --arms --frames " + unsaid_options(words) +
-         "; as `slurm`: --server-sbatch\n";
+         "; as `slurm`: --server-sbatch --detach\n";
 }
 
 }  // namespace probe::cli

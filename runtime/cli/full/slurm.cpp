@@ -2,6 +2,7 @@
 #include "runtime/cluster/slurm.h"
 #include "runtime/base/own_folder.h"
 #include "runtime/base/say.h"
+#include "runtime/base/shell_word.h"
 
 #include <fmt/format.h>
 
@@ -18,10 +19,11 @@ namespace {
 struct ArrayArguments {
   cluster::JobScript script;
   int array = 0, nodes = 0;
-  bool submit = false;
+  bool submit = false, detach = false;
 };
 struct SlurmArguments : ArrayArguments {
   RunArguments run;
+  std::string time_from;
 };
 struct SlurmAskArguments : ArrayArguments {
   AskArguments ask;
@@ -39,7 +41,8 @@ Result<cluster::ArrayOptions> array_options(const ArrayArguments& arguments) {
   options.script.server_apart = !arguments.script.server_sbatch.empty();
   if (options.script.program.empty())
     options.script.program = (folder_of_program() / "vlaprobe").string();
-  options.submit = arguments.submit;
+  options.submit = arguments.submit || arguments.detach;
+  options.detach = arguments.detach;
   options.tell = [](const std::string& sentence) { say("{}\n", sentence); };
   return options;
 }
@@ -52,6 +55,11 @@ int tell(const Result<cluster::SlurmReport>& done, const cluster::ArrayOptions& 
     say("{}: an array of {} tasks for {} {}; read it, then run sbatch with it, or "
         "this command with --submit\n",
         done->script, options.script.tasks, done->total, things);
+    return kFine;
+  }
+  if (options.detach && !(done->job.empty() && done->merge_job.empty())) {
+    say("{} of {} {} are stored in {}; `vlaprobe results {} --follow` shows the shards grow\n",
+        done->stored, done->total, things, out, shell_word(out));
     return kFine;
   }
   for (const std::string& note : done->merged.notes) say("note: {}\n", note);
@@ -73,6 +81,7 @@ int slurm_verb(const SlurmArguments& arguments) {
   cluster::SlurmOptions options;
   static_cast<cluster::ArrayOptions&>(options) = *array;
   options.run = std::move(*run_options);
+  options.time_from = arguments.time_from;
   return tell(cluster::run_on_slurm(*loaded.plan, options), *array, "episodes", options.run.out);
 }
 
@@ -88,8 +97,8 @@ int slurm_ask_verb(const SlurmAskArguments& arguments) {
   return tell(ask::ask_on_slurm(*loaded.plan, *options, *array), *array, "answers", options->out);
 }
 
-// Where its help has no room for the words of --server-sbatch, they are empty.
-void add_array_options(Verb verb, ArrayArguments& arguments, const char* server_sbatch) {
+// `is_brief`: its help has no room for all words.
+void add_array_options(Verb verb, ArrayArguments& arguments, bool is_brief) {
   verb.add_option("--array", arguments.array, "N tasks, each with one shard").between(1, 100000);
   verb.add_option("--nodes", arguments.nodes, "N tasks, each with one shard and a node of its own")
       .between(1, 100000);
@@ -102,7 +111,12 @@ void add_array_options(Verb verb, ArrayArguments& arguments, const char* server_
                   "an option of sbatch, as --sbatch=--gres=gpu:1; may be repeated");
   verb.add_option("--program", arguments.script.program, "path of vlaprobe on the nodes");
   verb.add_flag("--submit", arguments.submit, "submit it, wait and merge");
-  verb.add_option("--server-sbatch", arguments.script.server_sbatch, server_sbatch);
+  verb.add_flag("--detach", arguments.detach,
+                is_brief ? "" : "submit it and a job that merges, and do not wait");
+  verb.add_option(
+      "--server-sbatch", arguments.script.server_sbatch,
+      is_brief ? ""
+               : "one server for all, on a node of its own, {host} in P: an option of sbatch for it");
 }
 
 }  // namespace
@@ -115,9 +129,9 @@ void add_slurm(Verb app, int& exit) {
       "example: vlaprobe slurm suite/intact.probe --array 8 --jobs 8 -o runs/pi0 --submit \\\n"
       "           --policy 'openpi://127.0.0.1:{port}' --server-command 'serve --port {port}'");
   add_run_options(verb, arguments->run);
-  add_array_options(
-      verb, *arguments,
-      "one server for all, on a node of its own, {host} in P: an option of sbatch for it");
+  verb.add_option("--time-from", arguments->time_from,
+                  "each task asks for time as the episodes of this run took");
+  add_array_options(verb, *arguments, false);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_verb(*arguments); });
 }
@@ -132,7 +146,7 @@ void add_slurm_ask(Verb app, int& exit) {
       "           --model 'openai://127.0.0.1:{port}?model=qwen' --server-command 'vllm serve qwen "
       "--port {port}'");
   add_ask_options(verb, arguments->ask, SharedWords::kSlurmAsk);
-  add_array_options(verb, *arguments, "");
+  add_array_options(verb, *arguments, true);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = slurm_ask_verb(*arguments); });
 }

@@ -62,6 +62,54 @@ TEST_CASE("the job says how many tasks and CPUs it wants, and passes other optio
   CHECK(to_text(script)->find("#SBATCH --exclusive\n") != std::string::npos);
 }
 
+TEST_CASE("a time is asked for once, in whole minutes, and of a server apart in its part") {
+  JobScript script = script_in("/out");
+  CHECK(to_text(script)->find("--time") == std::string::npos);
+  script.time_s = 60 * 60 * 27 + 1;
+  CHECK(to_text(script)->find("#SBATCH --time=1-03:01:00\n") != std::string::npos);
+  for (const char* other : {"--time=5", "-t5", "-t 5", "--time 5"}) {
+    script.sbatch = {other};
+    CHECK_MESSAGE(!to_text(script).ok(), other);
+  }
+  script.sbatch = {"--timeless"};
+  CHECK(to_text(script).ok());
+  script.server_command = "serve";
+  script.server_apart = true;
+  script.server_sbatch = {"--gres=gpu:1"};
+  script.policy = "openpi://{host}:8000";
+  script.sbatch.clear();
+  const auto text = to_text(script);
+  REQUIRE_MESSAGE(text.ok(), to_text(text.failure()));
+  CHECK(text->find("#SBATCH --time=") < text->find("#SBATCH hetjob"));
+}
+
+TEST_CASE(
+    "the job that joins takes of the options who asks and where, and only shards that began") {
+  const run::TemporaryFolder folder;
+  const std::string out = folder / "it's a run";
+  JobScript script = script_in(out);
+  script.sbatch = {"-pgpu", "--account=lab", "--gres=gpu:1", "--exclusive",
+                   "-t5",   "--qos low",     "-c4"};
+  script.program = "echo";
+  const auto text = merge_text(script, true);
+  REQUIRE_MESSAGE(text.ok(), to_text(text.failure()));
+  for (const char* line : {"#SBATCH -pgpu\n", "#SBATCH --account=lab\n", "#SBATCH --qos low\n"})
+    CHECK_MESSAGE(text->find(line) != std::string::npos, *text);
+  for (const char* word : {"gres", "exclusive", "-t5", "-c4"})
+    CHECK_MESSAGE(text->find(word) == std::string::npos, word);
+  std::filesystem::create_directories(out + "/slurm/log");
+  for (const char* shard : {"1-of-4", "2-of-4", "3-of-4", "2-of-3"})
+    std::filesystem::create_directories(out + "/shards/" + shard);
+  for (const char* rows :
+       {"1-of-4/results.sqlite", "3-of-4/answers.sqlite", "2-of-3/results.sqlite"})
+    std::ofstream(out + "/shards/" + rows);
+  CHECK(run_program({"bash", "-c", *text})->status == 0);
+  const std::string said = read_file(out + "/slurm/log/merge.txt").value();
+  CHECK_MESSAGE(said.find("merge " + out + "/shards/1-of-4 " + out + "/shards/3-of-4 -o " + out +
+                          " --mixed-builds\n") != std::string::npos,
+                said);
+}
+
 TEST_CASE("a server on a node of its own and the worlds are two parts of one job") {
   JobScript script = script_in("/out");
   script.server_command = "serve --port {port}";

@@ -269,6 +269,64 @@ TEST_CASE("a node that dies with all that runs on it: its tasks go on elsewhere,
   CHECK_MESSAGE(done->status == 0, done->err);
 }
 
+TEST_CASE("nobody waits: a second job joins what the first one made, and its time is measured") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = run::table_plan(8, 20);
+  const Cluster cluster(folder / "cluster");
+  if (!cluster.ready()) {
+    MESSAGE("skipped: ", cluster.said());
+    return;
+  }
+  run::RunOptions trial;
+  trial.policy = "random";
+  trial.out = folder / "trial";
+  trial.seeds = {1};
+  REQUIRE(run::run(plan, trial).ok());
+
+  const std::string out = folder / "run";
+  SlurmOptions options = options_for(out);
+  options.script.tasks = 2;
+  options.detach = true;
+  options.time_from = trial.out;
+  std::vector<std::string> told;
+  options.tell = [&](const std::string& sentence) { told.push_back(sentence); };
+  const auto sent = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(sent.ok(), to_text(sent.failure()));
+  REQUIRE_FALSE(sent->job.empty());
+  REQUIRE_FALSE(sent->merge_job.empty());
+  CHECK(sent->total == 16);
+  REQUIRE(told.size() == 3);
+  CHECK_MESSAGE(told[0].starts_with("each task asks for time as measured: "), told[0]);
+  CHECK(told[2] == "job " + sent->merge_job + " joins its shards when it has ended");
+  CHECK(read_file(sent->script)->find("#SBATCH --time=00:06:00\n") != std::string::npos);
+  // Again, while they are under way: nothing more. Or they are over, and nothing is missing.
+  told.clear();
+  const auto again = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
+  CHECK((again->stored == 16 || told.back().starts_with("nothing is submitted: job ")));
+  CHECK(waited_for([&] {
+    const auto left = run_program({"squeue", "--noheader", "--jobs", sent->merge_job});
+    return left.ok() && left->out.empty();
+  }));
+  CHECK(rows_of(out).size() == 16);
+  options.detach = false;
+  const auto last = run_on_slurm(plan, options);
+  REQUIRE_MESSAGE(last.ok(), to_text(last.failure()));
+  CHECK(last->job.empty());
+  CHECK(last->stored == 16);
+  run::RunOptions single = options.run;
+  single.out = folder / "single";
+  REQUIRE(run::run(plan, single).ok());
+  CHECK(rows_of(out) == rows_of(folder / "single"));
+
+  options.time_from = folder / "cluster";
+  const auto refused = run_on_slurm(plan, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK_MESSAGE(refused.failure().message.find(
+                    "holds no call of `run` that ended with an episode") != std::string::npos,
+                refused.failure().message);
+}
+
 TEST_CASE("a job that cannot work is told with its log, and stays to be continued") {
   run::TemporaryFolder folder;
   const plan::Plan plan = run::table_plan(2, 2);
