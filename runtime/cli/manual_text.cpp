@@ -59,4 +59,18 @@ std::string manual_page(const VerbText& program, const std::string& version) {
   return out;
 }
 
+std::string verb_table(const VerbText& program) {
+  std::string out = "| verb | what it does |\n|---|---|\n";
+  const auto add = [&](const VerbText& verb, const std::string& path) {
+    std::string about;
+    for (const char c : verb.about) about += c == '|' ? std::string("\\|") : std::string(1, c);
+    out += fmt::format("| `{}` | {} |\n", path, about);
+  };
+  for (const VerbText& verb : program.verbs) {
+    add(verb, verb.name);
+    for (const VerbText& below : verb.verbs) add(below, verb.name + " " + below.name);
+  }
+  return out;
+}
+
 }  // namespace probe::cli

@@ -22,9 +22,11 @@ void add_completion(Verb app, int& exit) {
 
 void add_manual(Verb app, int& exit) {
   Verb verb = app.add_subcommand("manual", "every verb and option as a manual page");
+  auto verbs = std::make_shared<bool>(false);
   verb.footer("example: vlaprobe manual >vlaprobe.1 && man ./vlaprobe.1");
-  verb.callback([app, &exit] {
-    put("{}", manual_page(app.text(), version()));
+  verb.add_flag("--verbs", *verbs, "the verbs alone, as a table of Markdown");
+  verb.callback([app, verbs, &exit] {
+    put("{}", *verbs ? verb_table(app.text()) : manual_page(app.text(), version()));
     exit = kFine;
   });
 }

@@ -81,5 +81,15 @@ TEST_CASE("the manual page has every verb of the help and is good roff") {
   CHECK(set.err == "");
 }
 
+TEST_CASE("the table of verbs in the README of the command line is that of the program") {
+  Sandbox box;
+  const Outcome table = box.vlaprobe("manual --verbs");
+  REQUIRE(table.exit == 0);
+  CHECK(table.out.find("| `assets import` |") != std::string::npos);
+  const std::string readme = read_file(VLAPROBE_SOURCE_DIR "/runtime/cli/README.md");
+  CHECK_MESSAGE(readme.find(table.out) != std::string::npos,
+                "put this in the place of the table there:\n", table.out);
+}
+
 }  // namespace
 }  // namespace probe::test
