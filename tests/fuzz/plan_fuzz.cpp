@@ -14,36 +14,15 @@
 #include "runtime/plan/plan.h"
 #include "runtime/vm/judge.h"
 #include "tests/plan/rule_of.h"
+#include "tests/plan/seal.h"
 
 namespace {
 
 using namespace probe;
-using Bytes = std::vector<std::byte>;
+using test::Bytes;
 
 void need(bool truth) {
   if (!truth) std::abort();
-}
-
-// Makes the sections' hashes and the root right, as far as sections lie inside the file.
-void seal(Bytes& bytes) {
-  plan::Header header;
-  if (bytes.size() < sizeof header) return;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  header.magic = plan::kMagic;
-  header.major = plan::kMajor;
-  header.file_size = bytes.size();
-  const std::size_t room = (bytes.size() - sizeof header) / sizeof(plan::DirectoryEntry);
-  std::vector<plan::DirectoryEntry> directory(std::min<std::size_t>(header.sections, room));
-  if (directory.empty()) return;
-  const std::size_t size = directory.size() * sizeof(plan::DirectoryEntry);
-  std::memcpy(directory.data(), bytes.data() + sizeof header, size);
-  for (plan::DirectoryEntry& e : directory) {
-    if (e.offset > bytes.size() || e.size > bytes.size() - e.offset) continue;
-    e.sha256 = sha256(std::span<const std::byte>(bytes).subspan(e.offset, e.size)).bytes;
-  }
-  header.root = plan::root_hash(header, directory).bytes;
-  std::memcpy(bytes.data(), &header, sizeof header);
-  std::memcpy(bytes.data() + sizeof header, directory.data(), size);
 }
 
 void judge(const plan::Plan& plan, std::uint32_t task) {
@@ -95,7 +74,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Bytes bytes(size);
   if (size > 0) std::memcpy(bytes.data(), data, size);
   open(bytes, true);
-  seal(bytes);
+  test::seal(bytes);
   open(bytes, false);
   return 0;
 }

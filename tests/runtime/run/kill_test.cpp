@@ -1,4 +1,4 @@
-// A run that is killed again and again, and one whose disk is full; tests/kills.sh does the same
+// A run that is killed again and again, and one whose disk is full; tests/campaigns/kills.sh does the same
 // with a server, 200 times.
 #include <doctest/doctest.h>
 #include <signal.h>

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# tests/ask_kills.sh [KILLS] [VLAPROBE] [F]: kills `ask` KILLS times (100), at random moments, over 5,616 questions, and
+# tests/campaigns/ask_kills.sh [KILLS] [VLAPROBE] [F]: kills `ask` KILLS times (100), at random moments, over 5,616 questions, and
 # compares its rows with those of an undisturbed call. When all is answered before the kills are spent, the rest fall on
 # calls that find everything there.
 # Exit 0: every question has its one answer, the same as without kills.
 set -eu
-here=$(cd "$(dirname "$0")/.." && pwd)
+here=$(cd "$(dirname "$0")/../.." && pwd)
 kills=${1:-100}
 vlaprobe=${2:-$here/build/vlaprobe}
 plan=${3:-$here/suite/questions.probe}

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# tests/kills.sh [KILLS] [VLAPROBE]: kills client and server in turn, at random moments, KILLS times (200)
+# tests/campaigns/kills.sh [KILLS] [VLAPROBE]: kills client and server in turn, at random moments, KILLS times (200)
 # over one run of 96 episodes, and compares its rows with those of an undisturbed run. When the run
 # is complete before all kills are spent, the rest fall on calls that find everything there.
 # Exit 0: 96 rows, no duplicates, equal hashes.
 set -eu
-here=$(cd "$(dirname "$0")/.." && pwd)
+here=$(cd "$(dirname "$0")/../.." && pwd)
 kills=${1:-200}
 vlaprobe=${2:-$here/build/vlaprobe}
 python=/usr/bin/python3

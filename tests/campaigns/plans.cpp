@@ -1,0 +1,379 @@
+// Every plan that the verifier accepts runs or is refused by name: valid plans with some of their
+// numbers and indices replaced, their hashes made right. Each that is accepted begins an episode,
+// draws its pictures, makes a step and does the same once more in another world. Nothing may abort,
+// hang or differ.
+//   plans FILE.. [--for SECONDS | --count N] [--from SEED] [--only SEED]
+// A seed is one mutation, always the same. Worlds live in a child: one that dies or takes over
+// kMostSeconds is a finding, and the next goes on behind it. Exit 0: no finding.
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "runtime/compile/files.h"
+#include "runtime/plan/plan.h"
+#include "runtime/stage/assets.h"
+#include "runtime/stage/stage.h"
+#include "tests/plan/rule_of.h"
+#include "tests/plan/seal.h"
+
+namespace {
+
+using namespace probe;
+using plan::Section;
+using test::Bytes;
+
+constexpr double kMostSeconds = 60;
+constexpr rlim_t kMostMemory = rlim_t{6} << 30;
+
+// What came of a seed.
+enum class Came : std::uint8_t { kRefused, kNotMade, kNotBegun, kNotStepped, kRan, kCount };
+constexpr const char* kCame[] = {"refused by the verifier", "refused as it is made",
+                                 "invalid as it begins", "invalid in its step", "ran twice alike"};
+
+// In memory that parent and child share.
+struct Shared {
+  std::uint64_t seed, end;
+  std::array<std::uint64_t, static_cast<std::size_t>(Came::kCount)> came;
+  std::array<std::uint64_t, 400> rules;  // of rules.def, refusals
+  char said[2000];                       // of a difference
+};
+
+struct Base {
+  std::string file;
+  Bytes bytes;
+  std::shared_ptr<const stage::SharedAssets> assets;
+};
+
+[[noreturn]] void usage(const std::string& what) {
+  std::fprintf(stderr,
+               "plans: %s\nplans FILE.. [--for SECONDS | --count N] [--from SEED] [--only SEED]\n",
+               what.c_str());
+  std::exit(2);
+}
+
+Base base_of(const std::string& file) {
+  const std::string root = VLAPROBE_SOURCE_DIR;
+  auto compiled = compile::compile_files(
+      {file},
+      {.assets = AssetRoot(root + "/assets"), .library = root + "/dsl", .wants_plan = true});
+  if (!compiled) usage(to_text(compiled.failure()));
+  if (compiled->plan.empty()) usage(file + " makes no plan: `vlaprobe check` says why");
+  return {file, std::move(compiled->plan), nullptr};
+}
+
+AssetRoot assets() { return AssetRoot(VLAPROBE_SOURCE_DIR "/assets"); }
+
+class Mutation {
+ public:
+  explicit Mutation(std::uint64_t seed) : random_(seed) {}
+
+  // Whether files are still those of the plan before.
+  bool apply(Bytes& bytes) {
+    plan::Header header;
+    std::memcpy(&header, bytes.data(), sizeof header);
+    std::vector<plan::DirectoryEntry> sections(header.sections);
+    std::memcpy(sections.data(), bytes.data() + sizeof header,
+                sections.size() * sizeof sections[0]);
+    std::erase_if(sections, [](const auto& section) { return section.size < 8; });
+    const int count = below(3) == 0 ? 1 + static_cast<int>(below(4)) : 1;
+    bool same_files = true;
+    for (int i = 0; i < count; ++i) {
+      const auto& section = sections[below(sections.size())];
+      same_files = change(bytes, section) && same_files;
+    }
+    test::seal(bytes);
+    return same_files;
+  }
+  std::uint64_t below(std::uint64_t most) { return random_() % most; }
+
+ private:
+  bool change(Bytes& bytes, const plan::DirectoryEntry& section) {
+    const std::uint64_t at = section.offset + below(section.size / 8) * 8;
+    double number = 0;
+    std::memcpy(&number, bytes.data() + at, sizeof number);
+    const bool is_number =
+        std::isfinite(number) && std::abs(number) > 1e-12 && std::abs(number) < 1e12;
+    if (is_number || below(4) == 0) {
+      number = other(number);
+      std::memcpy(bytes.data() + at, &number, sizeof number);
+    } else {
+      const std::uint64_t half = at + below(2) * 4;
+      std::uint32_t word = 0;
+      std::memcpy(&word, bytes.data() + half, sizeof word);
+      word = other(word, bytes, section);
+      std::memcpy(bytes.data() + half, &word, sizeof word);
+    }
+    // Those that say which files there are and what is made of them.
+    constexpr Section kOfFiles[] = {Section::kStrings,  Section::kList,   Section::kAssets,
+                                    Section::kObjects,  Section::kRobots, Section::kScenes,
+                                    Section::kTasks,    Section::kBodies, Section::kCovers,
+                                    Section::kFixtures, Section::kParts,  Section::kShown};
+    return std::ranges::find(kOfFiles, static_cast<Section>(section.kind)) == std::end(kOfFiles);
+  }
+  double other(double was) {
+    constexpr double kOdd[] = {0,
+                               5e-324,
+                               1e-300,
+                               1e-12,
+                               1e-9,
+                               1e-6,
+                               1e-3,
+                               0.999999,
+                               1,
+                               2,
+                               3.14159265358979,
+                               100,
+                               1000,
+                               2000,
+                               1e4,
+                               1e6,
+                               1e8,
+                               1e9,
+                               1e12,
+                               1e38,
+                               1e300,
+                               1.7976931348623157e308,
+                               std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::quiet_NaN()};
+    switch (below(5)) {
+      case 0:
+        return (below(2) == 0 ? 1 : -1) * kOdd[below(std::size(kOdd))];
+      case 1:
+        return -was;
+      case 2:
+        return was * std::pow(10, static_cast<double>(below(13)) - 6);
+      case 3:
+        return was * std::ldexp(static_cast<double>(below(1 << 20)), -19);
+      default:
+        return std::nextafter(was, below(2) == 0 ? 1e9 : -1e9);
+    }
+  }
+  std::uint32_t other(std::uint32_t was, const Bytes& bytes, const plan::DirectoryEntry& section) {
+    switch (below(6)) {
+      case 0:
+        return was + 1;
+      case 1:
+        return was - 1;
+      case 2:
+        return static_cast<std::uint32_t>(below(16));
+      case 3:
+        return plan::kNone;
+      case 4:
+        return was ^ (std::uint32_t{1} << below(32));
+      default: {  // one that stands elsewhere in the section
+        std::uint32_t word = 0;
+        std::memcpy(&word, bytes.data() + section.offset + below(section.size / 4) * 4,
+                    sizeof word);
+        return word;
+      }
+    }
+  }
+  std::mt19937_64 random_;
+};
+
+// State and pictures as an episode begins and after its first step.
+using Seen = std::vector<Sha256>;
+
+Result<Seen> play(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
+                  const std::shared_ptr<const stage::SharedAssets>& assets, Came& came) {
+  Seen seen;
+  came = Came::kNotMade;
+  PROBE_ASSIGN(const auto stage, stage::Stage::create(plan, task, assets));
+  came = Came::kNotBegun;
+  const auto look = [&]() -> Status {
+    PROBE_ASSIGN([[maybe_unused]] const policy::Observation seen_now, stage->observe());
+    seen.push_back(stage->state_hash());
+    for (const stage::CameraFrame& camera : stage->frames()) {
+      const auto& rgb = camera.frame.rgb;
+      seen.push_back(sha256(std::as_bytes(std::span(rgb))));
+    }
+    return {};
+  };
+  PROBE_TRY(stage->reset(start));
+  PROBE_TRY(look());
+  came = Came::kNotStepped;
+  policy::Action action{0.3, -0.4, 0.2, 0.1, 0, 0.1, -1};
+  PROBE_TRY(stage->step(action));
+  PROBE_TRY(look());
+  for (const double value : stage->q()) {
+    if (!std::isfinite(value))
+      return Failure{Fault::kInternal, "a joint is not finite and nothing said so", ""};
+  }
+  came = Came::kRan;
+  return seen;
+}
+
+// One seed; sets what came of it, and `said` of what must not be.
+void try_one(const std::vector<Base>& bases, std::uint64_t seed, Shared& shared) {
+  Mutation mutation(seed);
+  const Base& base = bases[mutation.below(bases.size())];
+  Bytes bytes = base.bytes;
+  const bool same_files = mutation.apply(bytes);
+  const auto count = [&](Came came) { ++shared.came[static_cast<std::size_t>(came)]; };
+  const auto plan = plan::Plan::from_bytes(std::move(bytes), {.identity = false});
+  if (!plan) {
+    count(Came::kRefused);
+    const plan::RuleInfo* rule = plan::rule_of(plan.failure());
+    if (rule == nullptr) {
+      std::snprintf(shared.said, sizeof shared.said, "a refusal without a rule: %s",
+                    to_text(plan.failure()).c_str());
+    } else {
+      ++shared.rules[static_cast<std::size_t>(rule - plan::all_rules().data())];
+    }
+    return;
+  }
+  const auto task = static_cast<std::uint32_t>(mutation.below(plan->tasks().size()));
+  const auto episodes = plan->episodes(plan->tasks()[task]).size();
+  const auto start = static_cast<std::uint32_t>(mutation.below(std::max<std::size_t>(1, episodes)));
+  std::shared_ptr<const stage::SharedAssets> files = base.assets;
+  if (!same_files) {
+    const std::uint32_t tasks[] = {task};
+    auto loaded = stage::SharedAssets::load(*plan, assets(), tasks);
+    if (!loaded) return count(Came::kNotMade);
+    files = *loaded;
+  }
+  Came came = Came::kRan, again = Came::kRan;
+  const auto first = play(*plan, task, start, files, came);
+  const auto second = play(*plan, task, start, files, again);
+  count(came);
+  const auto text = [](const Result<Seen>& seen) {
+    return seen.ok() ? std::string("ran") : to_text(seen.failure());
+  };
+  if (came != again || text(first) != text(second) || (first.ok() && *first != *second)) {
+    std::snprintf(shared.said, sizeof shared.said, "differs when it is done again: %s; %s",
+                  text(first).c_str(), text(second).c_str());
+  } else if (!first.ok() && first.failure().code == Fault::kInternal) {
+    std::snprintf(shared.said, sizeof shared.said, "%s", text(first).c_str());
+  }
+}
+
+void work(const std::vector<Base>& bases, Shared& shared) {
+  const rlimit limit{kMostMemory, kMostMemory}, none{0, 0};
+  setrlimit(RLIMIT_AS, &limit);
+  setrlimit(RLIMIT_CORE, &none);
+  for (; shared.seed < shared.end; ++shared.seed) {
+    try_one(bases, shared.seed, shared);
+    if (shared.said[0] != '\0') _exit(1);
+  }
+  _exit(0);
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<std::string> files;
+  double seconds = 0;
+  std::uint64_t from = 1, count = 0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (!word.starts_with("--")) {
+      files.push_back(word);
+      continue;
+    }
+    if (i + 1 == argc) usage(word + " takes a number");
+    const std::string value = argv[++i];
+    if (word == "--for") {
+      seconds = std::strtod(value.c_str(), nullptr);
+    } else if (word == "--count") {
+      count = std::strtoull(value.c_str(), nullptr, 10);
+    } else if (word == "--from") {
+      from = std::strtoull(value.c_str(), nullptr, 10);
+    } else if (word == "--only") {
+      from = std::strtoull(value.c_str(), nullptr, 10);
+      count = 1;
+    } else {
+      usage("knows no " + word);
+    }
+  }
+  if (files.empty()) usage("no text to begin with");
+  std::vector<Base> bases;
+  for (const std::string& file : files) {
+    Base& base = bases.emplace_back(base_of(file));
+    const auto plan = plan::Plan::from_bytes(base.bytes);
+    if (!plan) usage(to_text(plan.failure()));
+    std::vector<std::uint32_t> tasks(plan->tasks().size());
+    for (std::uint32_t i = 0; i < tasks.size(); ++i) tasks[i] = i;
+    auto loaded = stage::SharedAssets::load(*plan, assets(), tasks);
+    if (!loaded) usage(to_text(loaded.failure()));
+    base.assets = *loaded;
+  }
+  void* const memory =
+      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) usage("no memory to share");
+  auto& shared = *new (memory) Shared{};
+  shared.seed = from;
+  shared.end = count > 0 ? from + count : std::numeric_limits<std::uint64_t>::max();
+  const double begun = now(), until = seconds > 0 ? begun + seconds : 1e300;
+  int findings = 0;
+  while (shared.seed < shared.end && now() < until) {
+    std::fflush(stdout);
+    const pid_t child = fork();
+    if (child < 0) usage("no process to work in");
+    if (child == 0) work(bases, shared);
+    volatile const std::uint64_t& seed = shared.seed;
+    std::uint64_t known = seed;
+    double since = now();
+    int status = 0;
+    std::string why;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+      if (seed != known) known = seed, since = now();
+      const bool is_over = now() >= until;
+      if (is_over || now() - since > kMostSeconds) {
+        kill(child, SIGKILL);
+        waitpid(child, &status, 0);
+        if (!is_over) why = "took over a minute";
+        status = 0;
+        break;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    if (WIFSIGNALED(status)) why = std::string("died of ") + strsignal(WTERMSIG(status));
+    if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
+      why = shared.said[0] != '\0' ? shared.said
+                                   : "ended with " + std::to_string(WEXITSTATUS(status));
+    shared.said[0] = '\0';
+    if (why.empty()) continue;
+    ++findings;
+    std::printf("FOUND seed %llu: %s\n", static_cast<unsigned long long>(shared.seed), why.c_str());
+    ++shared.seed;
+  }
+  std::uint64_t done = 0;
+  for (std::size_t i = 0; i < shared.came.size(); ++i) {
+    done += shared.came[i];
+    std::printf("%9llu %s\n", static_cast<unsigned long long>(shared.came[i]), kCame[i]);
+  }
+  std::vector<std::pair<std::uint64_t, std::string>> rules;
+  for (std::size_t i = 0; i < plan::all_rules().size() && i < shared.rules.size(); ++i) {
+    if (shared.rules[i] > 0)
+      rules.emplace_back(shared.rules[i], std::string(plan::all_rules()[i].id));
+  }
+  std::ranges::sort(rules, std::ranges::greater());
+  std::printf("%zu rules refused; most:", rules.size());
+  for (std::size_t i = 0; i < rules.size() && i < 8; ++i)
+    std::printf(" %s %llu", rules[i].second.c_str(),
+                static_cast<unsigned long long>(rules[i].first));
+  std::printf("\n%llu plans, seeds %llu to %llu, %.0f s, %d findings\n",
+              static_cast<unsigned long long>(done), static_cast<unsigned long long>(from),
+              static_cast<unsigned long long>(shared.seed), now() - begun, findings);
+  return findings == 0 ? 0 : 1;
+}
