@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "runtime/world/lanes.h"
 
@@ -174,32 +173,47 @@ void reset_impulses(Problem* problem) {
   }
 }
 
+bool is_soft(const ContactRows& c) { return c.give > 0 && c.columns != nullptr; }
+
+template <typename Lanes>
+void apply_impulses(std::size_t index, Lanes lanes, Problem* problem) {
+  const ContactRows& c = problem->rows[index];
+  const Sides s = sides(c, problem->bodies);
+  for (const RowIndex r : kWarmOrder) {
+    const double impulse = c.rows[r].impulse;
+    problem->contacts[index].start[r] = impulse;
+    if (impulse != 0 && (c.torsion || r != kTwist))
+      push(c, r, s, impulse, problem->u.data(), lanes);
+  }
+}
+
 // The impulses that a substep begins with answer what the drives pressed with in the last one.
 // Where targets grow from substep to substep, and begin anew, sweeps find by themselves only slowly
 // how much more or less that is now: a light thing between two fingers hides one from the other. So
-// all impulses that the arm gives and takes are scaled to what the drives press with now, by the
-// factor that leaves the least energy along that line.
+// the impulses of what is soft, these fingers, are scaled to what the drives press with now, by the
+// factor that leaves the least energy along that line; all other impulses stay as they were.
 template <typename Lanes>
 class LoadMatch {
  public:
+  // After the impulses of all that is not soft were applied.
   LoadMatch(Problem* problem, Lanes lanes) : problem_(problem), lanes_(lanes) {
     for (const ContactRows& c : problem->rows)
-      if (c.columns != nullptr) {
+      if (is_soft(c)) {
         free_ += work(c);
         give_ += c.give * c.rows[kNormal].impulse * c.rows[kNormal].impulse;
       }
   }
-  // After all impulses were applied.
+  // After those of what is soft were, too.
   void scale() {
     double with = 0;
     for (const ContactRows& c : problem_->rows)
-      if (c.columns != nullptr) with += work(c);
+      if (is_soft(c)) with += work(c);
     const double own = with - free_ + give_;  // of the impulses, by themselves
     if (!(own > 0)) return;
     const double factor = std::clamp(-free_ / own, 0.0, kMostMatched);
     for (size_t index = 0; index < problem_->rows.size(); ++index) {
       ContactRows& c = problem_->rows[index];
-      if (c.columns == nullptr) continue;
+      if (!is_soft(c)) continue;
       const Sides s = sides(c, problem_->bodies);
       for (const RowIndex r : kWarmOrder) {
         const double more = (factor - 1) * c.rows[r].impulse;
@@ -236,19 +250,18 @@ class LoadMatch {
 void warm_start(Problem* problem, const JointResponse& response) {
   double* u = problem->u.data();
   with_lanes(problem->lanes, [&](auto lanes) {
-    std::optional<LoadMatch<decltype(lanes)>> match;
-    const auto is_soft = [](const ContactRows& c) { return c.give > 0; };
-    if (std::ranges::any_of(problem->rows, is_soft)) match.emplace(problem, lanes);
+    bool any_soft = false;
     for (size_t index = 0; index < problem->rows.size(); ++index) {
-      ContactRows& c = problem->rows[index];
-      const Sides s = sides(c, problem->bodies);
-      for (const RowIndex r : kWarmOrder) {
-        const double impulse = c.rows[r].impulse;
-        problem->contacts[index].start[r] = impulse;
-        if (impulse != 0 && (c.torsion || r != kTwist)) push(c, r, s, impulse, u, lanes);
-      }
+      if (is_soft(problem->rows[index]))
+        any_soft = true;
+      else
+        apply_impulses(index, lanes, problem);
     }
-    if (match) match->scale();
+    if (!any_soft) return;
+    LoadMatch match(problem, lanes);
+    for (size_t index = 0; index < problem->rows.size(); ++index)
+      if (is_soft(problem->rows[index])) apply_impulses(index, lanes, problem);
+    match.scale();
   });
   for (LimitRow& row : problem->limits) {
     row.start = row.impulse;
