@@ -152,7 +152,9 @@ Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh
         case plan::CoverOf::kWalls:
           return std::abs(normal.z()) < kUpright && high > table + kAtTable;
         case plan::CoverOf::kFloor:
-          return is_level && high < lowest + kAtFloor && high < table - kBelowTable;
+          // Of a room without a table things stand on the floor itself.
+          return is_level && high < lowest + kAtFloor &&
+                 (high < table - kBelowTable || table < lowest + kAtTable);
         case plan::CoverOf::kObject:
           break;
       }

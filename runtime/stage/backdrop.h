@@ -44,7 +44,7 @@ struct Cover {
 };
 
 // `backdrop` with textures on its surface (level, at the table's height), its walls (upright, above
-// that) and its floor (level, the lowest of it, well below that). Where it has no table the surface
+// that) and its floor (level, the lowest of it, well below that or that itself). Where it has no table the surface
 // is what lies at `surface_z`. Fails (kRender), naming the part, where a texture covers nothing.
 Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh& fixture,
                                      const std::array<double, 4>& area, double surface_z,

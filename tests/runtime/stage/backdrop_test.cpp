@@ -14,9 +14,11 @@ void add_level(scene::Mesh& mesh, double z, const std::array<double, 4>& at) {
   for (const auto& [x, y] :
        {std::pair{at[0], at[1]}, {at[2], at[1]}, {at[2], at[3]}, {at[0], at[3]}}) {
     for (const double value : {x, y, z}) part.positions.push_back(static_cast<float>(value));
+    for (const float value : {0.0F, 0.0F, 1.0F}) part.normals.push_back(value);
   }
   part.indices = {0, 1, 2, 0, 2, 3};
   mesh.parts.push_back(part);
+  mesh.materials.resize(1);
 }
 
 TEST_CASE(
@@ -97,6 +99,26 @@ TEST_CASE("the tables of our own scenes lie where their surfaces are") {
     REQUIRE(height.has_value());
     CHECK(*height == doctest::Approx(z).epsilon(1e-4));
   }
+}
+
+TEST_CASE("the floor of a room is covered where things stand on it, too") {
+  scene::Texture plain;
+  plain.width = plain.height = 1;
+  plain.rgba = {10, 20, 30, 255};
+  const std::array floor{Cover{plan::CoverOf::kFloor, &plain, 0.4}};
+  const std::array<double, 4> all{-2, -2, 2, 2};
+  scene::Mesh room;
+  add_level(room, 0.017, all);
+  CHECK(covered_backdrop(room, {}, kArea, 0.017, floor).ok());
+  add_level(room, 0.87, kArea);
+  CHECK(covered_backdrop(room, {}, kArea, 0.87, floor).ok());
+  // A table on legs has no floor.
+  scene::Mesh table;
+  add_level(table, 0.87, kArea);
+  table.parts[0].positions.insert(table.parts[0].positions.end(), {0.1F, 0.1F, 0.2F});
+  table.parts[0].normals.insert(table.parts[0].normals.end(), {0.0F, 0.0F, 1.0F});
+  table.parts[0].indices.insert(table.parts[0].indices.end(), {0, 1, 4});
+  CHECK_FALSE(covered_backdrop(table, {}, kArea, 0.87, floor).ok());
 }
 
 }  // namespace
