@@ -36,6 +36,23 @@ bool FreeLine::is_free(const Pose& from, const Pose& to) const {
   return false;
 }
 
+bool is_free_along(const FreeLine& line, const Pose& from, std::span<const Pose> way) {
+  const Pose* at = &from;
+  for (const Pose& corner : way) {
+    if (!line.is_free(*at, corner)) return false;
+    at = &corner;
+  }
+  return true;
+}
+
+bool is_set_first(const Surroundings& around, const Pose& from, std::span<const Pose> way,
+                  const robot::HandShape& hand, double openness, double open) {
+  if (hand.turning.empty()) return false;
+  const std::vector<Ball> now = hand_balls(hand, hand.gap_at(openness)).all();
+  const std::vector<Ball> then = hand_balls(hand, hand.gap_at(open)).all();
+  return !is_free_along({&around, now}, from, way) && is_free_along({&around, then}, from, way);
+}
+
 std::optional<std::vector<Pose>> free_way(const Surroundings& around, const Pose& from,
                                           const Pose& to, std::span<const Ball> balls) {
   const FreeLine line{&around, balls};

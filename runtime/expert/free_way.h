@@ -18,6 +18,14 @@ struct FreeLine {
   bool is_free(const Pose& from, const Pose& to) const;
 };
 
+// Whether it goes so along all of a way.
+bool is_free_along(const FreeLine& line, const Pose& from, std::span<const Pose> way);
+
+// Whether fingers that turn have to be as open as `open` before the hand goes: as they are now it
+// would come near something on this way. Those that slide never.
+bool is_set_first(const Surroundings& around, const Pose& from, std::span<const Pose> way,
+                  const robot::HandShape& hand, double openness, double open);
+
 // The corners of the shortest of these ways, the last is `to`. Nothing where all touch something.
 std::optional<std::vector<Pose>> free_way(const Surroundings& around, const Pose& from,
                                           const Pose& to, std::span<const Ball> balls);

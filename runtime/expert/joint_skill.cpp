@@ -40,6 +40,8 @@ constexpr double kStands = 0.0015;               // m in a decision: less is sta
 constexpr double kSticks = 0.002;                // m of arc in a decision: less is no progress
 constexpr int kPatience = 5;                     // decisions without progress
 constexpr int kLongestMove = 60;
+constexpr double kSet = 0.03;    // of openness: fingers are set
+constexpr int kLongestSet = 10;  // decisions in which they are
 
 constexpr Pace kFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kNearHold{.shift = 0.035, .turn = 0.20};
@@ -172,8 +174,11 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
   std::stable_partition(holds.begin(), holds.end(), [&](const Hold& hold) {
     return std::ranges::none_of(failed_, [&](const Hold& old) { return is_same(old, hold); });
   });
+  bool is_found = false;
   for (std::size_t i = 0; i < std::min(holds.size(), kMostHolds); ++i) {
     const Hold& hold = holds[i];
+    // With one in hand, only for a grip that is better to come back from.
+    if (is_found && hold.pushes()) continue;
     ++lack->holds;
     const Pose at = tool_at(hold, pose, problem.hand, hold.pushes() ? kOff : 0);
     // Over an edge: level above it, then down behind it.
@@ -201,22 +206,34 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
       ++lack->blocked;
       continue;
     }
+    const bool sets_first =
+        is_set_first(around, arm.tcp, *way, problem.hand, arm.openness, hold.open);
     if (hooks) way->push_back(above);
     way->push_back(at);
     std::vector<Pose> whole = *way;
     if (hold.pushes()) whole.push_back(tool_at(hold, pose, problem.hand));
     whole.insert(whole.end(), moving.begin(), moving.end());
     if (!reach.follow(arm.joints, whole)) {
-      lack->add_out_of_reach(reach, arm.joints, at);
+      if (!is_found) lack->add_out_of_reach(reach, arm.joints, at);
       continue;
     }
+    const bool comes_back = hold.pushes() || !reach.may_twist() || [&] {
+      Pose off = whole.back();
+      off.position -= kBefore * (off.rotation * Vec3::UnitX());
+      whole.push_back(off);
+      whole.push_back(ready_);
+      return reach.follow(arm.joints, whole).has_value();
+    }();
+    if (is_found && !comes_back) continue;
+    is_found = true;
     hold_ = hold;
     way_ = std::move(*way);
-    if (hooks)
-      goal_.least = seen.joint->closed + kEdgeLeast * (far_of(*seen.joint) - seen.joint->closed);
-    return true;
+    sets_first_ = sets_first;
+    least_ = hooks ? seen.joint->closed + kEdgeLeast * (far_of(*seen.joint) - seen.joint->closed)
+                   : goal_.least;
+    if (comes_back) break;
   }
-  return false;
+  return is_found;
 }
 
 // Off the part the way the hand came.
@@ -248,6 +265,10 @@ void JointSkill::way_home(const policy::Privileged& view, const Arm& arm, const 
   way_ = way ? *way : std::vector<Pose>{ready_};
 }
 
+bool JointSkill::is_set(const Arm& arm) const {
+  return std::abs(arm.openness - hold_->open) < kSet;
+}
+
 void JointSkill::try_again(double position) {
   const bool went_on = std::abs(position - begun_) > kProgress * std::abs(goal_.aim - begun_);
   if (went_on) failed_.clear();
@@ -255,7 +276,7 @@ void JointSkill::try_again(double position) {
   const double turned = slides_ ? 100 : 180 / std::numbers::pi;
   lack_ =
       fmt::format("it stands at {:.1f} {} and should at {:.1f}, after {} holds", turned * position,
-                  slides_ ? "cm" : "deg", turned * goal_.least, tries_ + parts_ + 1);
+                  slides_ ? "cm" : "deg", turned * least_, tries_ + parts_ + 1);
   if (went_on && ++parts_ < kMostParts) return enter(Phase::kPlan);
   enter(++tries_ < kMostHoldTries ? Phase::kPlan : Phase::kOver);
 }
@@ -275,7 +296,7 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
       planned_ = true;
       reached_ = goal_.met(joint.position, goal_.enough);
       if (reached_) return enter(Phase::kOver);
-      if (plan(view, arm, reach)) return enter(Phase::kGo);
+      if (plan(view, arm, reach)) return enter(sets_first_ ? Phase::kSet : Phase::kGo);
       reached_ = goal_.met(joint.position, goal_.least);
       if (reached_ || homes_ >= kMostHomes || is_near(arm.tcp, ready_, 0.05, 0.3))
         return enter(Phase::kOver);
@@ -286,6 +307,9 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
       if (!is_near(arm.tcp, way_[next_], 0.03, 0.2) && steps_ < 20) return;
       steps_ = 0;
       return ++next_ < way_.size() ? void() : enter(Phase::kPlan);
+    case Phase::kSet:
+      if (is_set(arm) || steps_ >= kLongestSet) enter(Phase::kGo);
+      return;
     case Phase::kGo: {
       const bool is_last = next_ + 1 >= way_.size();
       const bool is_next_last = next_ + 2 >= way_.size();
@@ -301,8 +325,8 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
         if (!is_near(arm.tcp, way_[next_], off, 0.3)) return enter(Phase::kLetGo);
       }
       // Fingers are set before they go where there is little room.
-      const bool is_set = hold_->pushes() || std::abs(arm.openness - openness_) < 0.01;
-      if (is_next_last && !is_last && !is_set && steps_ < 25) return;
+      const bool stays = hold_->pushes() || std::abs(arm.openness - openness_) < 0.01;
+      if (is_next_last && !is_last && !stays && steps_ < 25) return;
       steps_ = still_ = 0;
       if (++next_ >= way_.size()) return enter(Phase::kMeet);
       if (next_ + 1 == way_.size()) refine(view, arm, reach);
@@ -327,8 +351,7 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
       steps_ = 0;
       if (++next_ < way_.size()) return;
       // A button comes back.
-      reached_ =
-          skill_.kind == policy::Skill::Kind::kPress || goal_.met(joint.position, goal_.least);
+      reached_ = skill_.kind == policy::Skill::Kind::kPress || goal_.met(joint.position, least_);
       return reached_ ? enter(Phase::kOver) : try_again(joint.position);
     case Phase::kOver:
       return;
@@ -342,6 +365,8 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
     return servo.toward(way_[next_], arm, robot::command_of_openness(arm.openness), kFarPace);
   const double open = robot::command_of_openness(hold_->open);
   switch (phase_) {
+    case Phase::kSet:
+      return servo.hold(arm, open);
     case Phase::kGo: {
       const bool is_last = next_ + 1 >= way_.size();
       const bool is_near = is_last || (hold_->reaches_over() && next_ + 2 >= way_.size());
@@ -372,7 +397,7 @@ policy::Action JointSkill::command(const policy::Privileged& view, const Arm& ar
       return servo.settle(arm.tcp, arm, open);
     case Phase::kBack:
       if (next_ < near_legs()) return servo.toward(way_[next_], arm, open, kMovePace);
-      return servo.toward(way_[next_], arm, kOpenGripper, kFarPace);
+      return servo.toward(way_[next_], arm, robot::command_of_openness(hand.widest()), kFarPace);
     case Phase::kPlan:
     case Phase::kHome:
     case Phase::kOver:

@@ -29,7 +29,7 @@ class JointSkill {
   const std::string& lack() const { return lack_; }
 
  private:
-  enum class Phase { kPlan, kHome, kGo, kMeet, kGrip, kMove, kLetGo, kBack, kOver };
+  enum class Phase { kPlan, kHome, kSet, kGo, kMeet, kGrip, kMove, kLetGo, kBack, kOver };
   // Where the joint shall go: done at `enough`, aimed at `aim`, both from `begin` on.
   struct Goal {
     double aim = 0, enough = 0, least = 0;  // `least`: enough where it goes no farther
@@ -54,6 +54,7 @@ class JointSkill {
   policy::Action command(const policy::Privileged& view, const Arm& arm, Servo& servo,
                          const Reach& reach);
   void advance_move(double position);
+  bool is_set(const Arm& arm) const;
   // Legs of the way back that are near the part.
   std::size_t near_legs() const { return hold_->pushes() ? 2 : 1; }
   void try_again(double position);
@@ -63,8 +64,10 @@ class JointSkill {
   Phase phase_ = Phase::kPlan;
   int steps_ = 0, tries_ = 0, parts_ = 0, homes_ = 0, still_ = 0;
   bool reached_ = false, planned_ = false, only_reaches_ = false, slides_ = false;
-  double aim_ = 0;    // of this hold: the goal's, or part of the way there
-  double begun_ = 0;  // where the joint was when this hold was planned
+  double aim_ = 0;           // of this hold: the goal's, or part of the way there
+  double begun_ = 0;         // where the joint was when this hold was planned
+  double least_ = 0;         // enough with this hold, where it goes no farther
+  bool sets_first_ = false;  // the fingers, before the hand goes to this hold
   double last_ = 0, openness_ = 1;
   Pose ready_;
   Pose at_;  // of the tool, a decision before

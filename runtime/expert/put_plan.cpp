@@ -29,8 +29,10 @@ constexpr double kLevelWay = 0.4;  // of the way down: less level is no way in f
 constexpr std::array kOut = {0.06, 0.10, 0.14};  // m along the surface, from under something
 constexpr int kOutWays = 8;
 constexpr double kFromUnder = 0.25;  // m straight up that are free where it is out from under it
-constexpr std::size_t kPutMostHolds = 60, kMostWays = 4;
-constexpr int kPutTurns = 8;  // of the source, where it comes from above
+constexpr std::size_t kPutMostHolds = 60;
+constexpr std::array<std::size_t, 2> kMostWays = {4,
+                                                  40};  // in; the latter where those lead nowhere
+constexpr int kPutTurns = 8;                            // of the source, where it comes from above
 constexpr double kWidthCost = 10,
                  kLeverCost = 3;  // of a m between the fingers; of a m off the middle
 // Of hands whose fingers turn, whose arms do not come to all from straight above.
@@ -71,8 +73,12 @@ class PutSearch {
 
   std::optional<PutPlan> run() {
     const std::vector<Held> holds = find_holds();
-    for (std::size_t i = 0; i < std::min(holds.size(), kPutMostHolds); ++i) {
-      if (auto plan = with(holds[i])) return plan;
+    // Where none of the best ways in goes, others may: those are often the same place turned.
+    for (const std::size_t most_ways : kMostWays) {
+      for (std::size_t i = 0; i < std::min(holds.size(), kPutMostHolds); ++i) {
+        if (auto plan = with(holds[i], most_ways)) return plan;
+      }
+      if (p_.lifts) break;
     }
     return std::nullopt;
   }
@@ -285,7 +291,7 @@ class PutSearch {
     return out;
   }
 
-  std::optional<PutPlan> with(const Held& held) const {
+  std::optional<PutPlan> with(const Held& held, std::size_t most_ways) const {
     const robot::HandShape& shape = hand();
     std::vector<Ball> carried = hand_balls(shape, shape.gap_at(held.open)).all();
     const std::vector<Ball> hand_only = carried;
@@ -299,6 +305,7 @@ class PutSearch {
     if (!to) return std::nullopt;
     PutPlan plan;
     plan.to_hold = *to;
+    plan.sets_first = is_set_first(all_, p_.scene->tcp, *to, shape, p_.scene->openness, held.open);
     plan.to_hold.push_back(held.tool);
     plan.open = held.open;
     plan.hold = in_source(held.tool);
@@ -308,7 +315,7 @@ class PutSearch {
     if (outs.empty()) return std::nullopt;
     if (p_.lifts) return lifted(plan, outs, there->back());
     const std::vector<WayIn> ins = ways_in(held, carried);
-    for (std::size_t i = 0; i < std::min(ins.size(), kMostWays); ++i) {
+    for (std::size_t i = 0; i < std::min(ins.size(), most_ways); ++i) {
       const Pose mouth = ins[i].mouth * plan.hold, end = ins[i].source * plan.hold;
       for (const std::vector<Pose>& out : outs) {
         const auto between = free_way(rest_, out.back(), mouth, carried);

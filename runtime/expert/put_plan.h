@@ -18,6 +18,7 @@ namespace probe::expert {
 struct PutPlan {
   std::vector<Pose> to_hold;  // the hold last
   double open = 1;            // openness of the gripper there, and where it lets go
+  bool sets_first = false;    // the fingers are so before the hand goes
   std::vector<Pose> carry;    // where it lets go last
   std::vector<Pose> leave;    // off what was put; none of what is only picked up
   Pose hold;                  // of the tool in the source's frame

@@ -12,11 +12,13 @@ namespace {
 constexpr int kUnderMostTries = 3;
 constexpr double kHoldNear = 0.004, kPutNear = 0.008, kHomeNear = 0.03;  // m
 constexpr double kBeforeHold = 0.010, kBeforePut = 0.015;                // m
-constexpr double kSlipped = 0.025;   // m that the source may move in the hand
-constexpr double kOffPlace = 0.05;   // m, of what was put
-constexpr double kTouches = 0.0025;  // m over what it is put on
-constexpr int kLongestLower = 8;     // decisions
-constexpr double kDown = 0.006;      // m a decision, until it stands
+constexpr double kSlipped = 0.025;    // m that the source may move in the hand
+constexpr double kOffPlace = 0.05;    // m, of what was put
+constexpr double kTouches = 0.0025;   // m over what it is put on
+constexpr int kLongestLower = 8;      // decisions
+constexpr double kDown = 0.006;       // m a decision, until it stands
+constexpr double kUnderSet = 0.03;    // of openness: fingers are set
+constexpr int kLongestUnderSet = 10;  // decisions in which they are
 
 constexpr Pace kUnderFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kUnderNearPace{.shift = 0.035, .turn = 0.20};
@@ -44,7 +46,7 @@ bool PutUnder::plan(const Scene& scene, const policy::Privileged& view, const Re
   if (!lifts) places = find_put_places(scene, view, skill_);
   plan_ = plan_put({&scene, &view, &reach, skill_.object, places, failed_, lifts});
   if (!plan_) return false;
-  enter(Phase::kGo);
+  enter(plan_->sets_first ? Phase::kSet : Phase::kGo);
   way_.begin(plan_->to_hold, kHoldNear, kBeforeHold);
   return true;
 }
@@ -69,7 +71,10 @@ bool PutUnder::holds(const Scene& s) const {
 void PutUnder::begin_leave(const Scene& scene, const policy::Privileged& view, const Reach& reach) {
   std::vector<Pose> way = plan_->leave;
   const robot::HandShape& hand = reach.hand().shape;
-  const std::vector<Ball> balls = hand_balls(hand, hand.gap_at(scene.openness)).all();
+  // As open as they are by now, and as they are told to be.
+  std::vector<Ball> balls = hand_balls(hand, hand.gap_at(scene.openness)).all();
+  const std::vector<Ball> told = hand_balls(hand, hand.gap_at(plan_->open)).all();
+  balls.insert(balls.end(), told.begin(), told.end());
   if (const auto home = free_way(surroundings_of(view), way.back(), ready_, balls))
     way.insert(way.end(), home->begin(), home->end());
   way_.begin(std::move(way), kHomeNear, kHomeNear);
@@ -78,6 +83,10 @@ void PutUnder::begin_leave(const Scene& scene, const policy::Privileged& view, c
 
 void PutUnder::advance(const Scene& s, const policy::Privileged& view, const Reach& reach) {
   switch (phase_) {
+    case Phase::kSet:
+      if (std::abs(s.openness - plan_->open) < kUnderSet || steps_ >= kLongestUnderSet)
+        enter(Phase::kGo);
+      return;
     case Phase::kGo:
       switch (way_.advance(s.tcp)) {
         case ToolWay::State::kGoing:
@@ -126,6 +135,8 @@ policy::Action PutUnder::command(const Scene& s, Servo& servo) const {
   const Arm arm{s.tcp, s.joints, s.openness};
   const double open = robot::command_of_openness(plan_->open);
   switch (phase_) {
+    case Phase::kSet:
+      return servo.hold(arm, open);
     case Phase::kGo:
       return servo.toward(way_.goal(), arm, open, way_.is_last() ? kUnderNearPace : kUnderFarPace);
     case Phase::kGrip:
@@ -134,7 +145,7 @@ policy::Action PutUnder::command(const Scene& s, Servo& servo) const {
       return servo.toward(way_.goal(), arm, kClosedGripper,
                           way_.is_last() ? kUnderNearPace : kUnderHeldPace);
     case Phase::kKeep:
-      return servo.hold(arm, only_reaches_ ? kOpenGripper : kClosedGripper);
+      return servo.hold(arm, only_reaches_ ? open : kClosedGripper);
     case Phase::kLower: {
       Pose goal = plan_->carry.back();
       goal.position.z() = std::min(goal.position.z(), s.tcp.position.z()) - kDown;

@@ -30,7 +30,7 @@ class PutUnder {
   bool keeps() const { return phase_ == Phase::kKeep; }
 
  private:
-  enum class Phase { kGo, kGrip, kCarry, kKeep, kLower, kOpen, kLeave, kOver };
+  enum class Phase { kSet, kGo, kGrip, kCarry, kKeep, kLower, kOpen, kLeave, kOver };
 
   bool plan(const Scene& scene, const policy::Privileged& view, const Reach& reach);
   void enter(Phase phase);

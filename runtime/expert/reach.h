@@ -27,6 +27,10 @@ class Reach {
   // this bound does not tell. In the base frame.
   double beyond(const Vec3& place) const;
 
+  // Whether the arm may be left so that the law does not bring it back to where it was: under one
+  // that goes past limits, joints come to theirs on some ways.
+  bool may_twist() const { return ignores_limits_; }
+
   // Follows straight lines from the tool's pose at `q` through the poses, a solution every 5 cm or
   // 0.3 rad, each from the one before. The joint positions at each pose; nothing as soon as one
   // fails.

@@ -49,8 +49,12 @@ struct HandShape {
   double openness_for(double gap_half) const {
     return turning.empty() ? gap_half / opening_half : openness_of_gap(turning, gap_half);
   }
+  // The openness at which they stand at `opening_half`: as wide as the hand is taken for. Fingers
+  // that turn can stand out farther.
+  double widest() const { return turning.empty() ? 1 : openness_of_gap(turning, opening_half); }
   // Inner faces on a way that begins at one openness and ends at another. Fingers that turn are
-  // brought to the latter first: wide open they stand out far to both sides.
+  // brought to the latter first where the way is not free with both: wide open they stand out far
+  // to both sides.
   double widest_on_way(double from, double to) const {
     return gap_at(turning.empty() ? std::max(from, to) : to);
   }

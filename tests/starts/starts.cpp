@@ -2,9 +2,10 @@
 // it makes of each, a line a start, and a table of the tasks with the starts that failed and why.
 // No run: nothing of it is stored beside the rows, which say that no picture was drawn.
 //
-//   starts FILE.probe.. --assets DIR [--policy expert] [--tasks GLOB] [--starts 0,11,30-35] [--jobs
-//   2] [-o rows.csv] [--watch]
+//   starts FILE.probe.. --assets DIR [--suite NAME] [--policy expert] [--tasks GLOB]
+//     [--starts 0,11,30-35] [--jobs 2] [-o rows.csv] [--watch]
 //
+// Without --suite: all tasks of all suites of each file.
 // --watch tells of every tenth step where the tool, the objects and the joints of fixtures are.
 #include <algorithm>
 #include <atomic>
@@ -33,7 +34,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> files;
-  std::string assets, policy = "expert", tasks = "*", starts, out;
+  std::string assets, suite, policy = "expert", tasks = "*", starts, out;
   int jobs = 1;
   bool watches = false;
 };
@@ -57,11 +58,9 @@ Result<Options> read_options(int count, char** words) {
   Options out;
   for (int i = 1; i < count; ++i) {
     const std::string word = words[i];
-    const std::map<std::string, std::string*> texts = {{"--assets", &out.assets},
-                                                       {"--policy", &out.policy},
-                                                       {"--tasks", &out.tasks},
-                                                       {"--starts", &out.starts},
-                                                       {"-o", &out.out}};
+    const std::map<std::string, std::string*> texts = {
+        {"--assets", &out.assets}, {"--suite", &out.suite},   {"--policy", &out.policy},
+        {"--tasks", &out.tasks},   {"--starts", &out.starts}, {"-o", &out.out}};
     if (word == "--watch") {
       out.watches = true;
     } else if (texts.contains(word) || word == "--jobs") {
@@ -165,6 +164,12 @@ std::string quoted(std::string text) {
   return '"' + text + '"';
 }
 
+bool is_member(const plan::Plan& plan, std::uint32_t task) {
+  return std::ranges::any_of(plan.suites(), [&](const plan::SuiteRecord& suite) {
+    return std::ranges::count(plan.members(suite), task) > 0;
+  });
+}
+
 class Campaign {
  public:
   explicit Campaign(Options options) : options_(std::move(options)) {}
@@ -174,6 +179,7 @@ class Campaign {
     choice_ = choice;
     for (const std::string& file : options_.files) {
       PROBE_ASSIGN(Compilation made, compile::compile_files({file}, {.assets = options_.assets,
+                                                                     .suite = options_.suite,
                                                                      .tasks = options_.tasks}));
       if (!made.ok) return usage(file + " has errors: `vlaprobe check` says which");
       PROBE_ASSIGN(plan::Plan plan, plan::Plan::from_bytes(std::move(made.plan)));
@@ -181,6 +187,8 @@ class Campaign {
     }
     for (std::size_t p = 0; p < plans_.size(); ++p) {
       for (std::uint32_t t = 0; t < plans_[p].tasks().size(); ++t) {
+        // A suite that is named brings what its tasks are compared with; that is not played.
+        if (!options_.suite.empty() && !is_member(plans_[p], t)) continue;
         const auto count = plans_[p].episodes(plans_[p].tasks()[t]).size();
         PROBE_ASSIGN(const std::vector<bool> wanted, chosen(options_.starts, count));
         for (std::uint32_t s = 0; s < count; ++s) {
