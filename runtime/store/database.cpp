@@ -87,6 +87,12 @@ Failure Database::failure(Access access) const {
   const std::string said = sqlite3_errmsg(handle_);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
     return {Fault::kStore, name() + " cannot be read (" + said + "); " + advice_, path_};
+  if (code == SQLITE_ERROR && said.starts_with("no such table")) {
+    return {Fault::kStore,
+            name() + " has no rows and no room for them: what writes it was cut off as it began; the "
+                     "same command goes on",
+            path_};
+  }
   if (code == SQLITE_BUSY) {
     const std::string lack = FolderLock::lack(folder_of(path_));
     if (!lack.empty()) {

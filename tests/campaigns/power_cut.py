@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""power_cut.py [--cuts N] [--seed S] [--forget SUFFIX] [--build DIR] [VERB..]: cuts the power N times (100) over `run`, `merge` and
+`ask`, at a random one of the calls that force something to the disk, and looks at what a machine would find when it is switched on
+again: in one half of the cuts nothing that was not forced, in the other any of it. Then the verb goes on. Held each time: what is
+there is read, no row lacks its trace, and in the end the rows are those of one that nobody disturbed.
+--forget .trace plants a mistake, files that are not forced, which has to be found: exit 0 then means that it was."""
+
+import argparse
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent.parent.parent
+
+
+class Found(Exception):
+    pass
+
+
+class Disk:
+    """A folder, and of it what was forced to the disk."""
+
+    def __init__(self, work, library):
+        self.root, self.kept, self.library = work / "disk", work / "kept", library
+        self.root.mkdir()
+        self.settle()
+
+    def settle(self):
+        """All that is there now is on the disk."""
+        shutil.rmtree(self.kept, ignore_errors=True)
+        self.kept.mkdir()
+        paths = [self.root, *self.root.rglob("*")]
+        script = "import os, sys\nfor path in sys.stdin.read().split('\\0'): os.fsync(os.open(path, os.O_RDONLY))"
+        # One process a few hundred: it keeps the files open.
+        for i in range(0, len(paths), 400):
+            subprocess.run([sys.executable, "-c", script], input="\0".join(map(str, paths[i:i + 400])), text=True, check=True,
+                           env=self.environment())
+
+    def environment(self, **more):
+        return {**os.environ, "LD_PRELOAD": str(self.library), "PROBE_DISK": str(self.root), "PROBE_KEPT": str(self.kept), **more}
+
+    def names(self, key):
+        listed = self.kept / f"names {key}"
+        lines = listed.read_text().splitlines() if listed.exists() else []
+        return {name: (kind, of) for kind, of, name in (line.split(" ", 2) for line in lines)}
+
+    def found(self, key, now, to, draw):
+        """Makes in `to` what is found of a folder that has the number `key` and is `now` as it would have been without the cut.
+        `draw`: whether something that was not forced is there all the same."""
+        to.mkdir()
+        forced = self.names(key)
+        there = {path.name: path for path in now.iterdir()} if now is not None and now.is_dir() else {}
+        for name in sorted(forced.keys() | there.keys()):
+            kind, of = forced.get(name, (None, None))
+            path = there.get(name)
+            if kind is None and not draw():
+                continue  # a new name
+            if kind is not None and path is None and draw():
+                continue  # a name that was taken away
+            is_folder = kind == "d" if kind is not None else path.is_dir()
+            if is_folder:
+                self.found(of or self.number(path), path, to / name, draw)
+                continue
+            if of is None or (path is not None and draw()):
+                of = self.number(path)
+                if draw():
+                    shutil.copyfile(path, to / name)
+                    continue
+            bytes_of = self.kept / f"bytes {of}"
+            (to / name).write_bytes(bytes_of.read_bytes() if bytes_of.exists() else b"")
+
+    def number(self, path):
+        said = subprocess.run(["stat", "-c", "%i %.9W", path], capture_output=True, text=True, check=True).stdout.split()
+        seconds, _, nanoseconds = said[1].partition(".")
+        return f"{said[0]}-{seconds}.{int(nanoseconds or 0)}"
+
+    def cut(self, chance):
+        to = self.root.parent / "found"
+        self.found(self.number(self.root), self.root, to, lambda: random.random() < chance)
+        shutil.rmtree(self.root)
+        to.rename(self.root)
+        self.settle()
+
+
+def rows_of(program, folder):
+    said = subprocess.run([program, "results", folder, "--json"], capture_output=True, text=True)
+    if said.returncode != 0 or said.stderr.strip():
+        raise Found(f"`results` says: {said.stderr.strip()[-600:]}")
+    rows = json.loads(said.stdout)
+    for row in rows:
+        if isinstance(row, dict):
+            row.pop("trace", None)
+    return sorted(json.dumps(row, sort_keys=True) for row in rows)
+
+
+def begun(folder):
+    return any((folder / name).exists() for name in ("results.sqlite", "answers.sqlite"))
+
+
+def campaign(verb, words, program, disk, calm, cuts):
+    """`words`: of the verb, with OUT in place of its folder."""
+    out = disk.root / "out"
+    call = [program, verb, *(str(out) if word == "OUT" else word for word in words)]
+    done = missed = 0
+    while done < cuts:
+        at = random.randint(1, 40)
+        chance = random.choice([0, 0.5])
+        ended = subprocess.run(call, env=disk.environment(PROBE_CUT=str(at)), capture_output=True, text=True)
+        if ended.returncode not in (0, -signal.SIGKILL):
+            raise Found(f"{verb} ends with {ended.returncode}: {ended.stderr.strip()[-600:]}")
+        if ended.returncode == 0:  # it was done before: begin anew
+            missed += 1
+            if rows_of(program, out) != calm:
+                raise Found(f"{verb}: its rows are not those of one without cuts")
+            shutil.rmtree(out)
+            disk.settle()
+            continue
+        done += 1
+        disk.cut(chance)
+        if begun(out):
+            try:
+                rows_of(program, out)
+            except Found as found:
+                # A database that was not made yet is told, and the verb begins it.
+                if not any(words in str(found) for words in ("was cut off as it began", "no run here:", "no answers here:")):
+                    raise
+    ended = subprocess.run(call, capture_output=True, text=True)
+    if ended.returncode != 0:
+        raise Found(f"{verb} does not go on: {ended.stderr.strip()[-600:]}")
+    if rows_of(program, out) != calm:
+        raise Found(f"{verb}: its rows are not those of one without cuts")
+    print(f"{verb}: {done} cuts, {missed} times done before the cut; {len(calm)} rows, those of one without cuts", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--cuts", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--forget", default="")
+    parser.add_argument("--build", type=pathlib.Path, default=HERE / "build")
+    parser.add_argument("verbs", nargs="*", default=[])
+    wish = parser.parse_args()
+    random.seed(wish.seed)
+    program, library = wish.build / "vlaprobe", wish.build / "tests/libprobe_test_power_cut.so"
+    os.environ["PROBE_FORGET"] = wish.forget
+    with tempfile.TemporaryDirectory(prefix="vlaprobe-cut-") as folder:
+        work = pathlib.Path(folder)
+        plan = work / "suite.plan"
+        subprocess.run([program, "build", HERE / "suite/intact.probe", "-o", plan], check=True, capture_output=True)
+        act = [str(plan), "--tasks", "carrot_on_plate", "--policy", "random", "--seeds", "1"]
+        for shard in ("1", "2"):
+            subprocess.run([program, "run", *act, "--episodes", "0-5", "--shard", f"{shard}/2", "-o", work / shard], check=True,
+                           capture_output=True)
+        verbs = {
+            "run": [*act, "--episodes", "0-5", "--jobs", "2", "-o", "OUT"],
+            "merge": [str(work / "1"), str(work / "2"), "-o", "OUT"],
+            "ask": [str(HERE / "suite/questions.probe"), "--tasks", "*carrot_on_plate", "--episodes", "0-1", "--model", "random", "-o", "OUT"],
+        }
+        try:
+            for verb in wish.verbs or verbs:
+                calm = work / f"calm_{verb}"
+                words = [str(calm) if word == "OUT" else word for word in verbs[verb]]
+                subprocess.run([program, verb, *words], check=True, capture_output=True)
+                here = work / verb
+                here.mkdir()
+                campaign(verb, verbs[verb], program, Disk(here, library), rows_of(program, calm), wish.cuts)
+        except Found as found:
+            print(f"FOUND {found}")
+            return 0 if wish.forget else 1
+    if wish.forget:
+        print(f"files that end with {wish.forget} were not forced, and nothing was found")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
