@@ -233,11 +233,12 @@ int RobotModel::find_joint(std::string_view wanted) const {
 Result<RobotModel> load_urdf(const std::string& path) {
   PROBE_ASSIGN(const std::string text, read_text(path));
   PROBE_ASSIGN(const UrdfText scanned, scan_urdf(text, path));
+  PROBE_ASSIGN(const std::string finite, without_infinite_limits(text, path));
   urdf::ModelInterfaceSharedPtr parsed;
   std::string said;
   try {
     Listener listener;
-    parsed = urdf::parseURDF(text);
+    parsed = urdf::parseURDF(finite);
     said = listener.text;
   } catch (const std::exception& e) {
     return Failure{Fault::kUrdf, fmt::format("urdfdom gave up: {}", e.what()), path};

@@ -11,12 +11,10 @@ using Lane2 = double __attribute__((vector_size(16)));
 // The width of rows of a robot with `joints` positions.
 inline int padded_lanes(int joints) { return (joints + 3) / 4 * 4; }
 
-// Calls f with the number of lanes, as a constant where it is a usual one: eight of a WidowX, twelve
-// of a Panda, or of the Google robot with its cabinet.
+// Calls f with the number of lanes, as a constant where it is the usual eight.
 template <typename F>
 inline auto with_lanes(int lanes, F f) {
   if (lanes == 8) return f(std::integral_constant<int, 8>{});
-  if (lanes == 12) return f(std::integral_constant<int, 12>{});
   return f(lanes);
 }
 

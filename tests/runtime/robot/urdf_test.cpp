@@ -215,6 +215,46 @@ TEST_CASE("a joint without limits, with turned limits, or of an unknown type is 
         "joint `waist` mimics `waist`, which itself mimics");
 }
 
+TEST_CASE("a wheel without ends is continuous, what is fixed loses them, half an end is refused") {
+  const std::string endless = "<limit lower='-inf' upper='inf' effort='1' velocity='1'/>";
+  const TextFile wheel(two_links(revolute(endless)));
+  const auto turns = load_urdf(wheel.path());
+  REQUIRE_MESSAGE(turns.ok(), (turns.ok() ? "" : to_text(turns.failure())));
+  CHECK(turns->joints[0].kind == JointKind::kContinuous);
+  const TextFile fixed(
+      two_links("<joint name='waist' type='fixed'><parent link='a'/><child "
+                "link='b'/>" +
+                endless + "</joint>"));
+  const auto stands = load_urdf(fixed.path());
+  REQUIRE_MESSAGE(stands.ok(), (stands.ok() ? "" : to_text(stands.failure())));
+  CHECK(stands->joints[0].kind == JointKind::kFixed);
+  const TextFile half(
+      two_links(revolute("<limit lower='-inf' upper='1' effort='1' velocity='1'/>")));
+  const auto refused = load_urdf(half.path());
+  REQUIRE(!refused.ok());
+  CHECK(refused.failure().message.starts_with("joint `waist` has a limit without end"));
+  CHECK(refused.failure().where == half.path() + ":4");
+}
+
+TEST_CASE("the released Google robot is read in each of its colourings") {
+  const std::filesystem::path folder = VLAPROBE_SOURCE_DIR
+      "/../shared/reference/google/google_assets/mani_skill2_real2sim/assets/descriptions/"
+      "googlerobot_description";
+  if (!std::filesystem::exists(folder)) {
+    MESSAGE("skipped: the released assets of the Google robot are not on this machine");
+    return;
+  }
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".urdf") continue;
+    CAPTURE(entry.path().string());
+    const auto loaded = load_urdf(entry.path().string());
+    CHECK_MESSAGE(loaded.ok(), (loaded.ok() ? "" : to_text(loaded.failure())));
+    ++count;
+  }
+  CHECK(count == 5);
+}
+
 TEST_CASE("numbers that are none fail and urdfdom's own words are kept") {
   for (const char* bad : {"nan", "inf", "1e999", "0.1.2", "one", ""}) {
     CAPTURE(bad);
