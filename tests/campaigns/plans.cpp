@@ -2,33 +2,25 @@
 // numbers and indices replaced, their hashes made right. Each that is accepted begins an episode,
 // draws its pictures, makes a step and does the same once more in another world. Nothing may abort,
 // hang or differ.
-//   plans FILE.. [--for SECONDS | --count N] [--from SEED] [--only SEED]
-// A seed is one mutation, always the same. Worlds live in a child: one that dies or takes over
-// kMostSeconds is a finding, and the next goes on behind it. Exit 0: no finding.
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
+//   campaign_plans FILE.. [--for SECONDS | --count N] [--from SEED] [--only SEED]
+// A seed is one mutation, always the same. Exit 0: no finding.
 #include <algorithm>
-#include <array>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <map>
+#include <memory>
 #include <random>
 #include <string>
-#include <thread>
+#include <utility>
+#include <vector>
 
 #include "runtime/compile/files.h"
 #include "runtime/plan/plan.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/stage.h"
+#include "tests/campaigns/driver.h"
 #include "tests/plan/rule_of.h"
 #include "tests/plan/seal.h"
 
@@ -38,21 +30,12 @@ using namespace probe;
 using plan::Section;
 using test::Bytes;
 
-constexpr double kMostSeconds = 60;
-constexpr rlim_t kMostMemory = rlim_t{6} << 30;
-
 // What came of a seed.
 enum class Came : std::uint8_t { kRefused, kNotMade, kNotBegun, kNotStepped, kRan, kCount };
 constexpr const char* kCame[] = {"refused by the verifier", "refused as it is made",
                                  "invalid as it begins", "invalid in its step", "ran twice alike"};
 
-// In memory that parent and child share.
-struct Shared {
-  std::uint64_t seed, end;
-  std::array<std::uint64_t, static_cast<std::size_t>(Came::kCount)> came;
-  std::array<std::uint64_t, 400> rules;  // of rules.def, refusals
-  char said[2000];                       // of a difference
-};
+constexpr std::size_t kRules = static_cast<std::size_t>(Came::kCount);  // counts of rules behind
 
 struct Base {
   std::string file;
@@ -60,12 +43,8 @@ struct Base {
   std::shared_ptr<const stage::SharedAssets> assets;
 };
 
-[[noreturn]] void usage(const std::string& what) {
-  std::fprintf(stderr,
-               "plans: %s\nplans FILE.. [--for SECONDS | --count N] [--from SEED] [--only SEED]\n",
-               what.c_str());
-  std::exit(2);
-}
+constexpr const char* kName = "campaign_plans";
+[[noreturn]] void usage(const std::string& what) { campaign::usage(kName, what); }
 
 Base base_of(const std::string& file) {
   const std::string root = VLAPROBE_SOURCE_DIR;
@@ -219,22 +198,20 @@ Result<Seen> play(const plan::Plan& plan, std::uint32_t task, std::uint32_t star
   return seen;
 }
 
-// One seed; sets what came of it, and `said` of what must not be.
-void try_one(const std::vector<Base>& bases, std::uint64_t seed, Shared& shared) {
-  Mutation mutation(seed);
+void try_one(const std::vector<Base>& bases, campaign::Tally& tally) {
+  Mutation mutation(tally.seed);
   const Base& base = bases[mutation.below(bases.size())];
   Bytes bytes = base.bytes;
   const bool same_files = mutation.apply(bytes);
-  const auto count = [&](Came came) { ++shared.came[static_cast<std::size_t>(came)]; };
+  const auto count = [&](Came came) { ++tally.counts[static_cast<std::size_t>(came)]; };
   const auto plan = plan::Plan::from_bytes(std::move(bytes), {.identity = false});
   if (!plan) {
     count(Came::kRefused);
     const plan::RuleInfo* rule = plan::rule_of(plan.failure());
     if (rule == nullptr) {
-      std::snprintf(shared.said, sizeof shared.said, "a refusal without a rule: %s",
-                    to_text(plan.failure()).c_str());
+      tally.find("a refusal without a rule: " + to_text(plan.failure()));
     } else {
-      ++shared.rules[static_cast<std::size_t>(rule - plan::all_rules().data())];
+      ++tally.counts[kRules + static_cast<std::size_t>(rule - plan::all_rules().data())];
     }
     return;
   }
@@ -256,58 +233,35 @@ void try_one(const std::vector<Base>& bases, std::uint64_t seed, Shared& shared)
     return seen.ok() ? std::string("ran") : to_text(seen.failure());
   };
   if (came != again || text(first) != text(second) || (first.ok() && *first != *second)) {
-    std::snprintf(shared.said, sizeof shared.said, "differs when it is done again: %s; %s",
-                  text(first).c_str(), text(second).c_str());
+    tally.find("differs when it is done again: " + text(first) + "; " + text(second));
   } else if (!first.ok() && first.failure().code == Fault::kInternal) {
-    std::snprintf(shared.said, sizeof shared.said, "%s", text(first).c_str());
+    tally.find(text(first));
   }
 }
 
-void work(const std::vector<Base>& bases, Shared& shared) {
-  const rlimit limit{kMostMemory, kMostMemory}, none{0, 0};
-  setrlimit(RLIMIT_AS, &limit);
-  setrlimit(RLIMIT_CORE, &none);
-  for (; shared.seed < shared.end; ++shared.seed) {
-    try_one(bases, shared.seed, shared);
-    if (shared.said[0] != '\0') _exit(1);
+void say(const campaign::Tally& tally) {
+  for (std::size_t i = 0; i < kRules; ++i)
+    std::printf("%9llu %s\n", static_cast<unsigned long long>(tally.counts[i]), kCame[i]);
+  std::vector<std::pair<std::uint64_t, std::string>> rules;
+  for (std::size_t i = 0; i < plan::all_rules().size(); ++i) {
+    if (tally.counts[kRules + i] > 0)
+      rules.emplace_back(tally.counts[kRules + i], std::string(plan::all_rules()[i].id));
   }
-  _exit(0);
-}
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  std::ranges::sort(rules, std::ranges::greater());
+  std::printf("%zu rules refused; most:", rules.size());
+  for (std::size_t i = 0; i < rules.size() && i < 8; ++i)
+    std::printf(" %s %llu", rules[i].second.c_str(),
+                static_cast<unsigned long long>(rules[i].first));
+  std::printf("\n");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::string> files;
-  double seconds = 0;
-  std::uint64_t from = 1, count = 0;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    if (!word.starts_with("--")) {
-      files.push_back(word);
-      continue;
-    }
-    if (i + 1 == argc) usage(word + " takes a number");
-    const std::string value = argv[++i];
-    if (word == "--for") {
-      seconds = std::strtod(value.c_str(), nullptr);
-    } else if (word == "--count") {
-      count = std::strtoull(value.c_str(), nullptr, 10);
-    } else if (word == "--from") {
-      from = std::strtoull(value.c_str(), nullptr, 10);
-    } else if (word == "--only") {
-      from = std::strtoull(value.c_str(), nullptr, 10);
-      count = 1;
-    } else {
-      usage("knows no " + word);
-    }
-  }
-  if (files.empty()) usage("no text to begin with");
+  const campaign::Options options = campaign::read_options(kName, argc, argv);
+  if (options.words.empty()) usage("no text to begin with");
   std::vector<Base> bases;
-  for (const std::string& file : files) {
+  for (const std::string& file : options.words) {
     Base& base = bases.emplace_back(base_of(file));
     const auto plan = plan::Plan::from_bytes(base.bytes);
     if (!plan) usage(to_text(plan.failure()));
@@ -317,63 +271,6 @@ int main(int argc, char** argv) {
     if (!loaded) usage(to_text(loaded.failure()));
     base.assets = *loaded;
   }
-  void* const memory =
-      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  if (memory == MAP_FAILED) usage("no memory to share");
-  auto& shared = *new (memory) Shared{};
-  shared.seed = from;
-  shared.end = count > 0 ? from + count : std::numeric_limits<std::uint64_t>::max();
-  const double begun = now(), until = seconds > 0 ? begun + seconds : 1e300;
-  int findings = 0;
-  while (shared.seed < shared.end && now() < until) {
-    std::fflush(stdout);
-    const pid_t child = fork();
-    if (child < 0) usage("no process to work in");
-    if (child == 0) work(bases, shared);
-    volatile const std::uint64_t& seed = shared.seed;
-    std::uint64_t known = seed;
-    double since = now();
-    int status = 0;
-    std::string why;
-    while (waitpid(child, &status, WNOHANG) == 0) {
-      if (seed != known) known = seed, since = now();
-      const bool is_over = now() >= until;
-      if (is_over || now() - since > kMostSeconds) {
-        kill(child, SIGKILL);
-        waitpid(child, &status, 0);
-        if (!is_over) why = "took over a minute";
-        status = 0;
-        break;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    if (WIFSIGNALED(status)) why = std::string("died of ") + strsignal(WTERMSIG(status));
-    if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
-      why = shared.said[0] != '\0' ? shared.said
-                                   : "ended with " + std::to_string(WEXITSTATUS(status));
-    shared.said[0] = '\0';
-    if (why.empty()) continue;
-    ++findings;
-    std::printf("FOUND seed %llu: %s\n", static_cast<unsigned long long>(shared.seed), why.c_str());
-    ++shared.seed;
-  }
-  std::uint64_t done = 0;
-  for (std::size_t i = 0; i < shared.came.size(); ++i) {
-    done += shared.came[i];
-    std::printf("%9llu %s\n", static_cast<unsigned long long>(shared.came[i]), kCame[i]);
-  }
-  std::vector<std::pair<std::uint64_t, std::string>> rules;
-  for (std::size_t i = 0; i < plan::all_rules().size() && i < shared.rules.size(); ++i) {
-    if (shared.rules[i] > 0)
-      rules.emplace_back(shared.rules[i], std::string(plan::all_rules()[i].id));
-  }
-  std::ranges::sort(rules, std::ranges::greater());
-  std::printf("%zu rules refused; most:", rules.size());
-  for (std::size_t i = 0; i < rules.size() && i < 8; ++i)
-    std::printf(" %s %llu", rules[i].second.c_str(),
-                static_cast<unsigned long long>(rules[i].first));
-  std::printf("\n%llu plans, seeds %llu to %llu, %.0f s, %d findings\n",
-              static_cast<unsigned long long>(done), static_cast<unsigned long long>(from),
-              static_cast<unsigned long long>(shared.seed), now() - begun, findings);
-  return findings == 0 ? 0 : 1;
+  return campaign::run(
+      options, {}, [&](campaign::Tally& tally) { try_one(bases, tally); }, say);
 }
