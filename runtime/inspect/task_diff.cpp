@@ -12,6 +12,7 @@
 #include "runtime/inspect/later_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/scene_facts.h"
 #include "runtime/inspect/skills_json.h"
 #include "runtime/inspect/varied.h"
 #include "runtime/inspect/words.h"
@@ -23,8 +24,9 @@ namespace probe::inspect {
 namespace {
 
 // What only some tasks have; it stands below what all of them have.
-constexpr const char* kOfSome[] = {"surface", "law",    "placed", "joints",
-                                   "idle",    "varied", "claims", "solution", "then"};
+constexpr const char* kOfSome[] = {
+    "surface", "base",   "posture", "area", "physics", "air",    "stands",   "backdrop", "photo",
+    "law",     "placed", "joints",  "idle", "varied",  "claims", "solution", "then"};
 bool is_of_some(const std::string& key) {
   return std::ranges::find(kOfSome, key) != std::end(kOfSome);
 }
@@ -136,6 +138,16 @@ Json diff_tasks(const plan::Plan& plan, std::uint32_t first, std::uint32_t secon
   if (heights[0] != heights[1]) {
     json["left"]["surface"] = fmt::format("{:.6g} cm", 100 * heights[0]);
     json["right"]["surface"] = fmt::format("{:.6g} cm", 100 * heights[1]);
+  }
+  // What a task changes of a scene in place leaves its name.
+  if (a.scene != b.scene && json["left"]["scene"] == json["right"]["scene"]) {
+    const std::vector<SceneFact> left = scene_facts(plan, a.scene);
+    const std::vector<SceneFact> right = scene_facts(plan, b.scene);
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      if (left[i] == right[i]) continue;
+      json["left"][left[i].name] = left[i].text;
+      json["right"][right[i].name] = right[i].text;
+    }
   }
   json["words_a"] = to_json(words.a);
   json["words_b"] = to_json(words.b);

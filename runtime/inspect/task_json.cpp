@@ -18,6 +18,7 @@
 #include "runtime/inspect/question_json.h"
 #include "runtime/inspect/robot_json.h"
 #include "runtime/inspect/roles_json.h"
+#include "runtime/inspect/scene_facts.h"
 #include "runtime/inspect/skills_json.h"
 #include "runtime/inspect/varied.h"
 #include "runtime/inspect/wrap.h"
@@ -186,6 +187,8 @@ Json describe(const plan::Plan& plan, std::uint32_t index) {
     json["metrics"].push_back(plan.text(metric.name));
   json["starts"] = Json::array();
   json["scene"] = plan.text(plan.scenes()[task.scene].name);
+  for (const SceneFact& fact : facts_in_place(plan, task.scene))
+    json["scene_here"][fact.name] = fact.text;
   json["robot"] = robot_of(plan, task);
   json["camera"] = plan.text(plan.cameras()[task.camera].name);
   json["cameras"] = Json::array();
@@ -322,6 +325,10 @@ std::string describe_text(const Json& task) {
   line("unseen", joined(task["ood"], "nothing"));
   line("categories", joined(task["categories"], "none"));
   word("scene");
+  if (task.contains("scene_here")) {
+    for (const auto& [fact, said] : task["scene_here"].items())
+      line("", fmt::format("{} {}", fact, said.get<std::string>()));
+  }
   line("robot", robot_text(task["robot"]));
   if (const std::string law = law_text(task["robot"]); !law.empty()) line("law", law);
   std::string cameras;
@@ -334,11 +341,10 @@ std::string describe_text(const Json& task) {
   for (const std::string& fixture : fixture_lines(task)) line("fixture", fixture);
   if (task.contains("regions")) line("regions", joined(names_of(task["regions"]), "none"));
   const double settle = task["settle_s"].get<double>();
-  line("layout", settle == 0
-                     ? fmt::format("{} starts, begun as placed", task["starts"].size())
-                     : fmt::format("{} starts, dropped from {} cm, settled for {} s",
-                                   task["starts"].size(),
-                                   tenth(task["drop_m"].get<double>(), 100), settle));
+  line("layout", settle == 0 ? fmt::format("{} starts, begun as placed", task["starts"].size())
+                             : fmt::format("{} starts, dropped from {} cm, settled for {} s",
+                                           task["starts"].size(),
+                                           tenth(task["drop_m"].get<double>(), 100), settle));
   if (task.contains("drawn")) {
     for (const Json& drawn : task["drawn"]) {
       std::string starts;

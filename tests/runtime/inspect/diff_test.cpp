@@ -100,3 +100,20 @@ TEST_CASE("a plan equals itself") {
   CHECK(diff["equal"] == 8);
   CHECK(diff["changed"].empty());
 }
+
+TEST_CASE("what a task changes of a scene in place is told, though the scene's name stays") {
+  const plan::Plan plan = test::compile_small(
+      "\nvariant aside of base { scene { robot at (20cm, 5cm, 87cm) yaw 180deg; "
+      "physics 400Hz friction 1 } }\n"
+      "suite more { tasks { base, aside }; seeds 1 }\n");
+  const auto index = [&](std::string_view name) { return plan.find_task(name).value(); };
+  const auto diff = diff_tasks(plan, index("base"), index("aside"));
+  CHECK(diff["left"]["scene"] == diff["right"]["scene"]);
+  CHECK(diff["right"]["base"] == "at (20, 5, 87) cm, yaw 180 deg");
+  CHECK(diff["right"]["physics"] == "400 Hz, friction 1");
+  CHECK_FALSE(diff["right"].contains("backdrop"));
+  CHECK(diff_text(diff).find("\n* base  ") != std::string::npos);
+  const Json shown = describe(plan, index("aside"));
+  CHECK(shown["scene_here"]["base"] == "at (20, 5, 87) cm, yaw 180 deg");
+  CHECK(describe_text(shown).find("base at (20, 5, 87) cm, yaw 180 deg") != std::string::npos);
+}
