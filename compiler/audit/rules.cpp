@@ -226,9 +226,11 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
     return op == plan::Op::kSLIDE || op == plan::Op::kTURN;
   });
   if (reads_joints) {
-    PROBE_ASSIGN(const bool holds,
-                 vm::judge_world(plan, task, success, vm::make_up_world(plan, task)));
-    if (holds) return true;
+    for (const std::uint32_t start : vm::kinds_of_starts(plan, task)) {
+      PROBE_ASSIGN(const bool holds,
+                   vm::judge_world(plan, task, success, vm::make_up_world(plan, task, start)));
+      if (holds) return true;
+    }
   }
   for (const plan::EpisodeRecord& episode : plan.episodes(plan.tasks()[task])) {
     for (const vm::Lies lies : {vm::Lies::kOn, vm::Lies::kIn}) {

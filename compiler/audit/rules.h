@@ -27,7 +27,7 @@ Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::
 // the target's own, and nothing else touches it.
 Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 // The same of a world in which nothing has moved and objects lie far apart, of a task that measures
-// joints of fixtures: a drawer that is to be opened begins open.
+// joints of fixtures: a drawer that is to be opened begins open in some start.
 Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
 // The same two questions of tasks that put several things somewhere, asked of each of these while

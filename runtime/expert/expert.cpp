@@ -92,6 +92,8 @@ class Expert final : public policy::Policy {
     if (options_.source > 1 && solution_.empty() && observation.privileged != nullptr &&
         !observation.privileged->solution.empty())
       return policy::Action{0, 0, 0, 0, 0, 0, kOpenGripper};
+    // Nothing to do at all.
+    if (!started_ && may_rest(observation)) return policy::Action{0, 0, 0, 0, 0, 0, kOpenGripper};
     PROBE_TRY(check(observation));
     if (started_ && --until_decision_ > 0) {
       const policy::Proprioception& now = observation.proprioception;
@@ -215,6 +217,11 @@ class Expert final : public policy::Policy {
     if (!options_.close && !skills.empty()) skills.resize(1);
     if (options_.close && options_.source == 0) skills = opened_first(view, std::move(skills));
     return tidied(view, std::move(skills));
+  }
+  bool may_rest(const policy::Observation& observation) const {
+    return options_.close && options_.source == 0 && solution_.empty() &&
+           observation.privileged != nullptr &&
+           observation.privileged->goal == policy::Goal::kNothing;
   }
   // The skill that is being done.
   bool moves_joint() const {

@@ -82,9 +82,10 @@ struct PrivilegedFixture {
 // What success asks for.
 enum class Goal : std::uint8_t {
   kOnTarget,
-  kAway,    // anywhere but on the target, still in the hand at the end
-  kLifted,  // in the hand above where it was
-  kOther,   // nothing that is found by moving the source about
+  kAway,     // anywhere but on the target, still in the hand at the end
+  kLifted,   // in the hand above where it was
+  kOther,    // nothing that is found by moving the source about
+  kNothing,  // it is so as the episode begins
 };
 
 // A step of a solution, by indices into the privileged view; -1 for none.

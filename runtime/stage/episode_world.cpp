@@ -10,7 +10,6 @@
 #include "runtime/base/check.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/moves.h"
-#include "runtime/stage/privileged.h"
 #include "runtime/stage/robot_of.h"
 
 namespace probe::stage {
@@ -91,6 +90,14 @@ EpisodeWorld::Arrangement EpisodeWorld::arrangement(std::vector<Pose> objects) c
     const std::vector<double>& positions = loaded->fixture.positions;
     at.fixture_joints.insert(at.fixture_joints.end(), positions.begin(), positions.end());
   }
+  return at;
+}
+
+EpisodeWorld::Arrangement EpisodeWorld::begun(const plan::EpisodeRecord& episode,
+                                              std::vector<Pose> objects) const {
+  Arrangement at = arrangement(std::move(objects));
+  std::ranges::copy(plan::joint_starts_of(plan_.tables(), scene_, episode),
+                    at.fixture_joints.begin());
   return at;
 }
 
@@ -189,7 +196,20 @@ Status EpisodeWorld::begin_world(const Arrangement& at) {
   return {};
 }
 
+Status EpisodeWorld::begin_view(std::uint32_t index) {
+  const auto task = static_cast<std::uint32_t>(&task_ - plan_.tasks().data());
+  PROBE_ASSIGN(ToDo to_do, to_dos_.of(plan_, task, index, bodies_));
+  privileged_.goal = to_do.goal;
+  privileged_.solution = std::move(to_do.solution);
+  const std::vector<double> joints = begun(plan_.episodes(task_)[index], {}).fixture_joints;
+  for (policy::PrivilegedFixture& fixture : privileged_.fixtures) {
+    if (fixture.joint) fixture.joint->rest = joints[fixture.joint->number];
+  }
+  return {};
+}
+
 Status EpisodeWorld::reset(std::uint32_t index) {
+  PROBE_TRY(begin_view(index));
   const plan::EpisodeRecord& episode = plan_.episodes(task_)[index];
   std::vector<Pose> placed;
   for (const plan::PlacementRecord& placement : plan_.placements(episode)) {
@@ -200,13 +220,10 @@ Status EpisodeWorld::reset(std::uint32_t index) {
                    "episode " + std::to_string(index) + " places another number of objects",
                    "task `" + std::string(plan_.text(task_.name)) + "`"};
   }
-  Arrangement begun = arrangement(std::move(placed));
-  std::ranges::copy(plan::joint_starts_of(plan_.tables(), scene_, episode),
-                    begun.fixture_joints.begin());
   const auto joints = plan_.joints(scene_, episode);
   arm_.assign(joints.begin(), joints.end());
   waiting_.clear();
-  PROBE_ASSIGN(const Arrangement settled, settle(begun));
+  PROBE_ASSIGN(const Arrangement settled, settle(begun(episode, std::move(placed))));
   PROBE_TRY(begin_world(settled));
   if (episode.arm.count != 0) PROBE_TRY(check_arm());
   controller_.reset(robot_q());

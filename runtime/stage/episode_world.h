@@ -18,6 +18,7 @@
 #include "runtime/robot/robot.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/measure.h"
+#include "runtime/stage/privileged.h"
 #include "runtime/stage/task_bodies.h"
 #include "runtime/vm/sample.h"
 #include "runtime/world/controlled.h"
@@ -47,6 +48,10 @@ class EpisodeWorld {
 
   // One control step. The world must not be used after a failure, until the next reset.
   Status act(const policy::Action& action);
+
+  // What is to be done from the task's start `index`: for who restores one of its states, and done
+  // by reset().
+  Status begin_view(std::uint32_t index);
 
   // restore() works without a reset() before it. It fails (kWorld, kPolicy) on the state of
   // another task; only reset() and restore() may be called then.
@@ -82,6 +87,8 @@ class EpisodeWorld {
     std::vector<double> fixture_joints;  // m and rad, of all fixtures in their order
   };
   Arrangement arrangement(std::vector<Pose> objects) const;  // fixtures' joints as they begin
+  // The same as an episode begins, before things settle.
+  Arrangement begun(const plan::EpisodeRecord& episode, std::vector<Pose> objects) const;
   world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
   Result<Arrangement> settle(const Arrangement& placed);
   Status check_arm() const;
@@ -120,6 +127,7 @@ class EpisodeWorld {
   std::vector<vm::BodyStart> starts_;
   vm::StepSample sample_;
   policy::Privileged privileged_;
+  ToDos to_dos_;
 };
 
 }  // namespace probe::stage

@@ -4,9 +4,9 @@
 
 namespace probe::stage {
 
-Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
+Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task, std::uint32_t start) {
   using policy::Goal;
-  PROBE_ASSIGN(const vm::SourceGoal goal, vm::source_goal(plan, task));
+  PROBE_ASSIGN(const vm::SourceGoal goal, vm::source_goal(plan, task, start));
   switch (goal) {
     case vm::SourceGoal::kOnTarget:
       return Goal::kOnTarget;
@@ -14,6 +14,8 @@ Result<policy::Goal> goal_of(const plan::Plan& plan, std::uint32_t task) {
       return Goal::kAway;
     case vm::SourceGoal::kLifted:
       return Goal::kLifted;
+    case vm::SourceGoal::kNothing:
+      return Goal::kNothing;
     case vm::SourceGoal::kOther:
       break;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/roles.h"
@@ -11,6 +12,7 @@
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/solution.h"
 #include "runtime/vm/derived_solution.h"
+#include "runtime/vm/made_up.h"
 
 namespace probe::stage {
 namespace {
@@ -115,15 +117,23 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
   view.target = roles.has_target() ? static_cast<int>(roles.target) : -1;
   view.first_distractor =
       roles.distractors.count > 0 ? static_cast<int>(roles.distractors.first) : -1;
-  PROBE_ASSIGN(view.goal, goal_of(plan, task_index));
-  const auto said = plan::skills_of(plan.tables(), task_index);
-  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
-  if (skills.empty() && view.goal == policy::Goal::kOther) {
-    PROBE_ASSIGN(skills, vm::derive_solution(plan, task_index));
-  }
-  view.solution = solution_of(plan, skills, bodies);
   view.wrong_fixtures = wrong_fixtures_of(plan, task, bodies);
   return view;
+}
+
+Result<ToDo> ToDos::of(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
+                       const TaskBodies& bodies) {
+  std::vector<double> key = vm::begins_as(plan, task, start);
+  if (const auto known = known_.find(key); known != known_.end()) return known->second;
+  ToDo made;
+  PROBE_ASSIGN(made.goal, goal_of(plan, task, start));
+  const auto said = plan::skills_of(plan.tables(), task);
+  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+  if (skills.empty() && made.goal == policy::Goal::kOther) {
+    PROBE_ASSIGN(skills, vm::derive_solution(plan, task, start));
+  }
+  made.solution = solution_of(plan, skills, bodies);
+  return known_.try_emplace(std::move(key), std::move(made)).first->second;
 }
 
 void update_privileged(const vm::StepSample& sample, const TaskBodies& bodies, std::size_t fingers,

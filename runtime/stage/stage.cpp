@@ -100,6 +100,7 @@ Status Stage::restore(const StageState& state) {
     return Failure{Fault::kWorld, "the saved state is of another plan, task or start",
                    "task `" + std::string(plan_.text(plan_.tasks()[task_].name)) + "`"};
   }
+  PROBE_TRY(world_->begin_view(state.start));
   PROBE_TRY(world_->restore(state.world));
   start_ = state.start;
   for (const PastPlaces& places : state.past) {

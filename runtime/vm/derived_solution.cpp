@@ -53,13 +53,14 @@ struct Bundle {
 
 class Deriver {
  public:
-  Deriver(const plan::Plan& plan, std::uint32_t task, std::uint32_t success)
+  Deriver(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
+          std::uint32_t start = 0)
       : plan_(plan),
         task_(task),
         success_(success),
         record_(plan.tasks()[task]),
         roles_(plan::roles_of(plan.tables(), record_)),
-        still_(make_up_world(plan, task)),
+        still_(make_up_world(plan, task, start)),
         joints_(plan::joints_of(plan.tables(), plan.scenes()[record_.scene])) {}
 
   Result<std::vector<plan::SkillRecord>> run() {
@@ -489,17 +490,24 @@ class Deriver {
 
 }  // namespace
 
-Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task) {
+Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, std::uint32_t task,
+                                                       std::uint32_t start) {
   const auto success = plan.find_metric(plan.tasks()[task], "success");
   if (!success) return std::vector<plan::SkillRecord>();
-  return Deriver(plan, task, *success).run();
+  return Deriver(plan, task, *success, start).run();
 }
 
 Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task) {
   const auto said = plan::skills_of(plan.tables(), task);
   const auto success = plan.find_metric(plan.tasks()[task], "success");
   if (said.empty() || !success) return std::string();
-  return Deriver(plan, task, *success).flaw(said);
+  const std::vector<std::uint32_t> kinds = kinds_of_starts(plan, task);
+  for (const std::uint32_t start : kinds) {
+    PROBE_ASSIGN(std::string flaw, Deriver(plan, task, *success, start).flaw(said));
+    if (flaw.empty()) continue;
+    return start == 0 ? flaw : fmt::format("where it begins as in start {}: {}", start, flaw);
+  }
+  return std::string();
 }
 
 Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "runtime/plan/fixtures.h"
@@ -17,6 +18,7 @@ constexpr int kSteps = 8;
 constexpr double kMostGap = 2e-3;  // m: above what carries it, where a layout puts it
 constexpr double kFloor = 5e-3;    // m: of a hollow thing
 constexpr double kFar = 0.5;       // m: where objects stand that do not matter
+constexpr double kAlike = 0.01;    // m, rad: joints that begin alike, as far as one asks
 
 // Half extents with z the axis that is nearest the vertical in the pose, as a world gives them.
 Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>& rotation) {
@@ -35,6 +37,12 @@ Vec3 half_extents(const plan::ObjectRecord& object, const std::array<double, 4>&
 bool is_upright(const std::array<double, 4>& rotation) {
   constexpr double kRounding = 1e-9;
   return std::abs(rotation[1]) < kRounding && std::abs(rotation[2]) < kRounding;
+}
+
+// From the model's origin, of an object that stands upright; of others 0.
+Vec3 middle_of(const plan::ObjectRecord& object, const std::array<double, 4>& rotation) {
+  if (!is_upright(rotation)) return Vec3::Zero();
+  return (Vec3(object.box_min.data()) + Vec3(object.box_max.data())) / 2;
 }
 
 // An object as it is placed, before it comes to rest.
@@ -67,7 +75,7 @@ PlacedObject placed_object(std::uint16_t body, const plan::ObjectRecord& object,
 
 }  // namespace
 
-MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
+MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const double table = plan.scenes()[record.scene].surface_z;
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[record.scene].robot];
@@ -85,7 +93,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
   world.sample.joints.resize(robot.drives.count);
   if (!episodes.empty()) {
     for (const double position :
-         plan::joint_starts_of(plan.tables(), plan.scenes()[record.scene], episodes[0]))
+         plan::joint_starts_of(plan.tables(), plan.scenes()[record.scene], episodes[start]))
       world.sample.joints.push_back({position, 0});
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -96,11 +104,10 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
       at = {0, 0, table};
     } else if (kind == plan::BodyKind::kObject) {
       std::array<double, 4> rotation = {1, 0, 0, 0};
-      if (!episodes.empty()) rotation = plan.placements(episodes[0])[i].rotation;
+      if (!episodes.empty()) rotation = plan.placements(episodes[start])[i].rotation;
       const plan::ObjectRecord& object = plan.objects()[bodies[i].index];
       world.starts[i].half = half_extents(object, rotation);
-      if (is_upright(rotation))
-        world.middles[i] = (Vec3(object.box_min.data()) + Vec3(object.box_max.data())) / 2;
+      world.middles[i] = middle_of(object, rotation);
       at = {kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()};
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};
@@ -119,6 +126,37 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task) {
     world.sample.own.push_back({body, world.starts[body].position});
   }
   return world;
+}
+
+std::vector<double> begins_as(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
+                              double joint_step) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const plan::EpisodeRecord& episode = plan.episodes(record)[start];
+  std::vector<double> all =
+      plan::joint_starts_of(plan.tables(), plan.scenes()[record.scene], episode);
+  if (joint_step > 0)
+    for (double& joint : all) joint = std::round(joint / joint_step);
+  const auto bodies = plan.bodies(record);
+  const auto placements = plan.placements(episode);
+  for (std::size_t i = 0; i < bodies.size() && i < placements.size(); ++i) {
+    if (static_cast<plan::BodyKind>(bodies[i].kind) != plan::BodyKind::kObject) continue;
+    const plan::ObjectRecord& object = plan.objects()[bodies[i].index];
+    for (const Vec3& size : {half_extents(object, placements[i].rotation),
+                             middle_of(object, placements[i].rotation)})
+      all.insert(all.end(), size.begin(), size.end());
+  }
+  return all;
+}
+
+std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t task) {
+  std::set<std::vector<double>> known;
+  std::vector<std::uint32_t> firsts;
+  const auto count = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
+  for (std::uint32_t start = 0; start < count; ++start) {
+    if (known.insert(begins_as(plan, task, start, kAlike)).second) firsts.push_back(start);
+  }
+  if (firsts.empty()) firsts.push_back(0);
+  return firsts;
 }
 
 std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,

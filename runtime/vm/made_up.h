@@ -15,8 +15,8 @@ namespace probe::vm {
 // N s: what a light object at rest presses in a substep.
 inline constexpr double kMadeUpContact = 0.01;
 
-// The task's bodies where its first episode turns them, half a metre from one another and from the
-// arm, parts of fixtures as well as objects; nothing touches.
+// The task's bodies as a start turns them and joints of fixtures as it has them, half a metre from
+// one another and from the arm, parts of fixtures as well as objects; nothing touches.
 struct MadeUpWorld {
   std::vector<BodyStart> starts;
   StepSample sample;
@@ -43,7 +43,17 @@ struct MadeUpWorld {
   }
 };
 
-MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task);
+// `start`: of the task's episodes, which may be none.
+MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start = 0);
+
+// What a start gives to its made-up world: starts of which it is the same have the same goal, and
+// the same skills make success. `joint_step` (m, rad): what joints are rounded to; 0: not at all.
+std::vector<double> begins_as(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
+                              double joint_step = 0);
+// The first start of each kind, ascending, joints rounded to a centimetre and half a degree:
+// recorded ones differ by a hair. 0 of a task without starts.
+std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t task);
+
 
 // How what a layout puts on another object comes to rest: its lower side on the other's upper side,
 // or just above the other's lower side, as in a hollow thing.

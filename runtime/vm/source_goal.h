@@ -14,11 +14,12 @@ enum class SourceGoal : std::uint8_t {
   kOnTarget,  // it lies on the target, let go
   kAway,      // that is no success, and it is one when it is held far from there
   kLifted,    // without a target: it is held above its start
+  kNothing,   // joints of fixtures begin in this start so that it is success, and in others not
 };
-Result<SourceGoal> source_goal(const plan::Plan& plan, std::uint32_t task);
+Result<SourceGoal> source_goal(const plan::Plan& plan, std::uint32_t task, std::uint32_t start = 0);
 
 // Whether there is anything for a policy of skills to try: the text says a solution, one can be
-// derived, or the source goes somewhere.
+// derived in each kind of start, or the source goes somewhere.
 Result<bool> has_skills(const plan::Plan& plan, std::uint32_t task);
 
 }  // namespace probe::vm

@@ -75,6 +75,25 @@ plan::Plan the_kitchen() {
   return std::move(*plan);
 }
 
+// A table of starts beside the text, of a carrot, a plate and the drawers as rows say.
+std::string table_of(const std::string& joints) {
+  std::string rows = "start,object,x_m,y_m,z_m,qw,qx,qy,qz,value\n";
+  std::size_t start = 0;
+  for (std::size_t from = 0; from < joints.size(); ++start) {
+    const std::size_t end = joints.find(';', from);
+    const std::string number = std::to_string(start);
+    rows += number + ",source,-0.2,0.1,0.92,1,0,0,0,\n" + number + ",target,-0.2,-0.1,0.92,1,0,0,0,\n";
+    const std::string here = joints.substr(from, end - from);
+    const std::size_t comma = here.find(',');
+    rows += number + ",cabinet.top,,,,,,,," + here.substr(0, comma) + "\n";
+    rows += number + ",cabinet.middle,,,,,,,," + here.substr(comma + 1) + "\n";
+    from = end + 1;
+  }
+  const std::string name = "probe_solution_" + std::to_string(getpid()) + ".csv";
+  std::ofstream(std::filesystem::temp_directory_path() / name) << rows;
+  return name;
+}
+
 // Whether the expert makes the success of a task's start.
 bool solves(const plan::Plan& plan, const std::string& name, std::uint32_t start) {
   const std::uint32_t tasks[] = {plan.find_task(name).value()};
@@ -193,6 +212,43 @@ suite all { tasks { ordered, free }; seeds 0 }
   CHECK(derived("ordered") == "put green_cube on towel; put carrot on plate");
   CHECK(derived("free") == "put carrot on plate; put green_cube on towel");
   CHECK(solves(plan, "ordered", 0));
+}
+
+TEST_CASE("what is to be done is found for each start, as its joints begin") {
+  const plan::Plan plan = kitchen_of(R"(
+use "std/place.probe"
+layout begun { starts ")" + table_of("0,0;0.13,0;0.13,0.13;") + R"("; drop 1cm settle 0.5s }
+abstract task begins like kept { scene drawers; layout begun }
+metrics laid { success = at end (on_top_of(source, target) and closed(cabinet.top_drawer)) }
+metrics shut { success = at end (closed(cabinet.top_drawer) and travel(cabinet.middle) < 1cm) }
+task lay like begins { metrics laid; say "put {the source} on {the target} and close the top drawer" }
+task shut like begins { metrics shut; say "close all drawers behind {the source} and {the target}" }
+suite all { tasks { lay, shut }; seeds 0 }
+)");
+  const auto to_do = [&](const char* name, std::uint32_t start) {
+    const std::uint32_t tasks[] = {plan.find_task(name).value()};
+    const auto loaded = SharedAssets::load(plan, VLAPROBE_SOURCE_DIR "/assets", tasks);
+    REQUIRE(loaded.ok());
+    const auto stage = Stage::create(plan, tasks[0], *loaded, {{}, false});
+    REQUIRE(stage.ok());
+    REQUIRE((*stage)->reset(0).ok());
+    REQUIRE((*stage)->reset(start).ok());
+    const policy::Privileged& view = *(*stage)->observe()->privileged;
+    std::string text = view.goal == policy::Goal::kNothing    ? "nothing"
+                       : view.goal == policy::Goal::kOnTarget ? "onto the target"
+                                                              : "";
+    for (const policy::Skill& skill : view.solution)
+      text += skill.name.substr(skill.name.find('`'));
+    return text;
+  };
+  CHECK(to_do("lay", 0) == "onto the target");
+  CHECK(to_do("lay", 1) == "`put carrot on plate``close cabinet.top_drawer`");
+  CHECK(to_do("shut", 0) == "nothing");
+  CHECK(to_do("shut", 1) == "`close cabinet.top_drawer`");
+  CHECK(solves(plan, "lay", 0));
+  CHECK(solves(plan, "lay", 1));
+  CHECK(solves(plan, "shut", 0));
+  CHECK(solves(plan, "shut", 1));
 }
 
 TEST_CASE("regions of two drawers are two places, though their boxes are one in their own frames") {
