@@ -30,6 +30,12 @@ std::string start_text(const Json& joint) {
                      shown(joint["moves"], joint["starts"]["most"]), unit_of(joint));
 }
 
+Json each_of(const std::vector<std::vector<double>>& starts, std::size_t joint) {
+  Json each = Json::array();
+  for (const std::vector<double>& joints : starts) each.push_back(joints[joint]);
+  return each;
+}
+
 // Where a link begins to be seen, in the unit of the joint that decides it.
 std::string limit_text(const Json& fixture, const Json& link) {
   for (const Json& joint : fixture["joints"]) {
@@ -48,8 +54,10 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
       plan::joint_starts_of(plan.tables(), scene, plan.episodes(task)[0]);
   // A table of starts may begin each elsewhere.
   std::vector<double> least = starts, most = starts;
+  std::vector<std::vector<double>> all_starts;
   for (const plan::EpisodeRecord& episode : plan.episodes(task)) {
-    const std::vector<double> here = plan::joint_starts_of(plan.tables(), scene, episode);
+    const std::vector<double>& here =
+        all_starts.emplace_back(plan::joint_starts_of(plan.tables(), scene, episode));
     for (std::size_t i = 0; i < here.size(); ++i) {
       least[i] = std::min(least[i], here[i]);
       most[i] = std::max(most[i], here[i]);
@@ -78,7 +86,8 @@ Json fixtures_of(const plan::Plan& plan, std::uint32_t index) {
       if (!armatures.empty())
         json["joints"].back()["armature"] = armatures[json["joints"].size() - 1];
       if (least[next] < most[next])
-        json["joints"].back()["starts"] = {{"least", least[next]}, {"most", most[next]}};
+        json["joints"].back()["starts"] = {
+            {"least", least[next]}, {"most", most[next]}, {"each", each_of(all_starts, next)}};
       ++next;
     }
     json["parts"] = Json::array();
@@ -126,6 +135,20 @@ Json names_of(const Json& regions) {
   Json names = Json::array();
   for (const Json& region : regions) names.push_back(region["region"]);
   return names;
+}
+
+std::vector<BegunColumn> begun_columns(const Json& fixtures) {
+  std::vector<BegunColumn> columns;
+  for (const Json& fixture : fixtures) {
+    for (const Json& joint : fixture["joints"]) {
+      if (!joint.contains("starts")) continue;
+      BegunColumn column{fixture["fixture"].text() + "." + joint["joint"].text(), {}};
+      for (const Json& at : joint["starts"]["each"])
+        column.starts.push_back(fmt::format("{}{}", shown(joint["moves"], at), unit_of(joint)));
+      columns.push_back(std::move(column));
+    }
+  }
+  return columns;
 }
 
 Json joint_starts_text(const Json& fixtures) {

@@ -219,7 +219,8 @@ class Page {
   // Solid where they begin, dashed where their joint ends.
   void parts() {
     for (const TopPart& part : view_.parts) {
-      put("<g stroke=\"{0}\"><title>{1}</title>\n", kFixture, xml_text(part.name));
+      put("<g stroke=\"{0}\"><title>{1}{2}</title>\n", kFixture, xml_text(part.name),
+          part.starts.empty() ? "" : ": starts " + ranges(part.starts));
       for (const auto& outline : part.outlines) {
         put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.18\"/>\n", points(outline),
             kFixture);
@@ -227,6 +228,14 @@ class Page {
       for (const auto& outline : part.open)
         put("<polygon points=\"{}\" fill=\"none\" stroke-dasharray=\"3 3\"/>\n", points(outline));
       put("</g>\n");
+      for (const TopPart::Begun& other : part.others) {
+        put("<g stroke=\"{0}\" stroke-opacity=\"0.6\"><title>{1}: starts {2}</title>\n", kFixture,
+            xml_text(part.name), ranges(other.starts));
+        for (const auto& outline : other.outlines)
+          put("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.06\"/>\n", points(outline),
+              kFixture);
+        put("</g>\n");
+      }
     }
   }
 

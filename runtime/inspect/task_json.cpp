@@ -273,6 +273,8 @@ std::string starts_text(const Json& task) {
     for (std::size_t i = 0; i < names.size(); ++i)
       widths[i] = std::max(widths[i], place_text(start[i]).size());
   }
+  const std::vector<BegunColumn> joints =
+      task.contains("fixtures") ? begun_columns(task["fixtures"]) : std::vector<BegunColumn>();
   std::string text;
   const auto out = std::back_inserter(text);
   const auto column = [&](std::size_t i, const std::string& cell) {
@@ -282,11 +284,14 @@ std::string starts_text(const Json& task) {
   const bool has_both = !task["distances_m"].empty();
   fmt::format_to(out, "{:>5}  {:<8}", "start", "start id");
   if (has_both) fmt::format_to(out, "  {:>5}", "apart");
+  for (const BegunColumn& joint : joints) fmt::format_to(out, "  {}", joint.joint);
   for (std::size_t i = 0; i < names.size(); ++i) column(i, names[i]);
   text += '\n';
   for (std::size_t e = 0; e < task["starts"].size(); ++e) {
     fmt::format_to(out, "{:>5}  {}", e, short_id(task["ids"]["starts"][e]));
     if (has_both) fmt::format_to(out, "  {:>5}", tenth(task["distances_m"][e].get<double>(), 100));
+    for (const BegunColumn& joint : joints)
+      fmt::format_to(out, "  {:>{}}", joint.starts[e], joint.joint.size());
     for (std::size_t i = 0; i < names.size(); ++i) column(i, place_text(task["starts"][e][i]));
     text += '\n';
   }

@@ -67,10 +67,69 @@ class PosedFixture {
   Pose base_;
 };
 
-// How one fixture stands, joints at `starts`; `frames` gets those of its parts, by their number.
+// How a fixture's joints begin, and in which starts.
+struct BegunJoints {
+  std::vector<double> joints;
+  std::vector<std::uint32_t> starts;
+};
+constexpr double kAlike = 1e-3;  // m, rad: not seen from above
+
+// Of `count` joints from the scene's joint `first` on; those of the first start first.
+std::vector<BegunJoints> begun_joints(const plan::Plan& plan, const plan::TaskRecord& task,
+                                      std::size_t first, std::size_t count) {
+  const plan::SceneRecord& scene = plan.scenes()[task.scene];
+  std::vector<BegunJoints> all;
+  for (std::uint32_t start = 0; const plan::EpisodeRecord& episode : plan.episodes(task)) {
+    const std::vector<double> joints = plan::joint_starts_of(plan.tables(), scene, episode);
+    const std::span<const double> here = std::span(joints).subspan(first, count);
+    const auto known = std::ranges::find_if(all, [&](const BegunJoints& begun) {
+      return std::ranges::equal(begun.joints, here, [](double a, double b) {
+        return std::abs(a - b) < kAlike;
+      });
+    });
+    if (known == all.end()) {
+      all.push_back({{here.begin(), here.end()}, {start}});
+    } else {
+      known->starts.push_back(start);
+    }
+    ++start;
+  }
+  return all;
+}
+
+std::vector<std::vector<Point>> shadows(const std::vector<scene::Solid>& solids, const Pose& at) {
+  std::vector<std::vector<Point>> all;
+  for (const scene::Solid& solid : solids) all.push_back(shadow(moved(solid, at)));
+  return all;
+}
+
+// Where a part stands elsewhere than in the first start. Starts in which it stands alike, as other
+// joints of its fixture alone differ, are one.
+void add_others(const PosedFixture& posed, std::size_t link,
+                const std::vector<scene::Solid>& solids, std::span<const BegunJoints> begun,
+                TopPart* seen) {
+  for (const BegunJoints& one : begun) {
+    std::vector<std::vector<Point>> outlines = shadows(solids, posed.at(one.joints)[link]);
+    std::vector<std::uint32_t>* starts = &seen->starts;
+    if (outlines != seen->outlines) {
+      auto known = std::ranges::find(seen->others, outlines, &TopPart::Begun::outlines);
+      if (known == seen->others.end())
+        known = seen->others.insert(known, {std::move(outlines), {}});
+      starts = &known->starts;
+    }
+    starts->insert(starts->end(), one.starts.begin(), one.starts.end());
+  }
+  std::ranges::sort(seen->starts);
+  for (TopPart::Begun& other : seen->others) std::ranges::sort(other.starts);
+  if (seen->others.empty()) seen->starts.clear();
+}
+
+// How one fixture stands, its joints as they begin; `frames` gets those of its parts in the first
+// start, by their number.
 Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
-                   std::span<const double> starts, const AssetRoot& asset_root,
+                   std::span<const BegunJoints> all, const AssetRoot& asset_root,
                    std::map<std::uint32_t, Pose>* frames, TopView* view) {
+  const std::vector<double>& starts = all.front().joints;
   PROBE_ASSIGN(const PosedFixture posed, PosedFixture::create(plan, record, asset_root));
   const std::string folder = std::filesystem::path(posed.model().path).parent_path().string();
   const std::vector<Pose> begun = posed.at(starts);
@@ -90,13 +149,13 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
     TopPart& seen = view->parts.emplace_back();
     seen.name = plan.text(part.name);
     const auto solids = scene::link_solids(posed.model().links[link], folder);
-    for (const scene::Solid& solid : solids)
-      seen.outlines.push_back(shadow(moved(solid, begun[link])));
+    seen.outlines = shadows(solids, begun[link]);
+    add_others(posed, link, solids, all, &seen);
     if (part.joint == plan::kNone || plan::is_endless(joints[part.joint])) continue;
     std::vector<double> open(starts.begin(), starts.end());
     open[part.joint] = open_end(joints[part.joint]);
     const Pose there = posed.at(open)[link];
-    for (const scene::Solid& solid : solids) seen.open.push_back(shadow(moved(solid, there)));
+    seen.open = shadows(solids, there);
   }
   return {};
 }
@@ -106,18 +165,14 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
 Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
                     const AssetRoot& asset_root, TopView* view) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
-  const std::vector<double> starts =
-      task.episodes.count == 0
-          ? std::vector<double>()
-          : plan::joint_starts_of(plan.tables(), scene, plan.episodes(task)[0]);
   std::map<std::uint32_t, Pose> frames;
-  std::span<const double> left = starts;
+  std::size_t first = 0;
   for (const std::uint32_t number : plan.fixtures(scene)) {
     const plan::FixtureRecord& record = plan.fixtures()[number];
-    if (left.size() < record.joints.count) break;  // a task without starts
-    PROBE_TRY(
-        add_fixture(plan, record, left.first(record.joints.count), asset_root, &frames, view));
-    left = left.subspan(record.joints.count);
+    const auto begun = begun_joints(plan, task, first, record.joints.count);
+    if (begun.empty()) break;  // a task without starts
+    PROBE_TRY(add_fixture(plan, record, begun, asset_root, &frames, view));
+    first += record.joints.count;
   }
   for (std::uint32_t number = 0; number < plan.regions().size(); ++number) {
     const plan::RegionRecord& region = plan.regions()[number];

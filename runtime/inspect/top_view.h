@@ -48,10 +48,16 @@ struct TopPart {
   std::string name;                          // "cabinet.top_drawer"
   std::vector<std::vector<Point>> outlines;  // as the first episode begins
   std::vector<std::vector<Point>> open;      // its joint at the end of its way; empty: it has none
+  std::vector<std::uint32_t> starts;         // that begin so; empty: all
+  struct Begun {
+    std::vector<std::vector<Point>> outlines;
+    std::vector<std::uint32_t> starts;
+  };
+  std::vector<Begun> others;  // as other starts begin
 };
 struct TopRegion {
   std::string name;  // "cabinet.inside_top"
-  std::vector<Point> outline;
+  std::vector<Point> outline;  // as the first episode begins
 };
 
 struct TopView {

@@ -11,6 +11,9 @@
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
 #include "runtime/inspect/fixture_json.h"
+#include "runtime/inspect/svg.h"
+#include "runtime/inspect/task_json.h"
+#include "runtime/inspect/top_view.h"
 #include "runtime/plan/axes.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/plan.h"
@@ -324,6 +327,27 @@ TEST_CASE("a drawer that begins elsewhere in each start is shown by where it beg
   const std::string text = inspect::joint_starts_text(fixtures).dump();
   CHECK_MESSAGE(text.find("cabinet.top 4 to 14 cm") != std::string::npos, text);
   CHECK(text.find("cabinet.bottom 0 cm") != std::string::npos);
+  const std::string shown = inspect::describe_text(inspect::describe(plan, task));
+  CHECK_MESSAGE(shown.find("start id  cabinet.top") != std::string::npos, shown);
+  CHECK(shown.find("         14cm") != std::string::npos);
+  const auto view = inspect::top_view(plan, task, (kRoot / "assets").string());
+  REQUIRE(view.ok());
+  const std::string svg = inspect::to_svg(*view);
+  for (const char* drawn : {"<title>cabinet.top_drawer: starts 0<", "<title>cabinet.top_drawer: starts 1<",
+                            "<title>cabinet.bottom_drawer<"})
+    CHECK_MESSAGE(svg.find(drawn) != std::string::npos, drawn);
+}
+
+TEST_CASE("a sentence that is over at once in some starts is told with them") {
+  const std::string text = said(
+      "start,object,x_m,y_m,value\n0,cabinet.top,,,0.13\n1,cabinet.top,,,0\n2,cabinet.top,,,0.14\n",
+      "use \"suite/kitchen.probe\"\n"
+      "layout given { starts \"starts.csv\"; drop 2cm settle 0.5s }\n"
+      "task t like close_the_top_drawer { layout given; start none; say \"open {the target}\"\n"
+      "  then say \"close {the target}\" when pulled(cabinet.top_drawer, 10cm) }\n");
+  CHECK_MESSAGE(text.find("warning[P0607]: what brings the next sentence of `t` holds before "
+                          "anything moves in 2 of 3 starts: 0, 2") != std::string::npos,
+                text);
 }
 
 TEST_CASE("what stands in a drawer in one start alone is found there") {
