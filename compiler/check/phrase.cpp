@@ -166,6 +166,8 @@ struct TaskLanguage {
     diagnostic.point(drawn(starts->front()))
         .label(phrase.text.span, "means `" + phrase.means_text + "`");
     tell_why(phrase, wanted, starts->front(), diagnostic);
+    const std::string unsaid = code == Code::P0403 ? unsaid_in(model, task, phrase) : "";
+    if (!unsaid.empty()) diagnostic.note(unsaid);
     diagnostic.severity = Severity::kError;  // `where clear` is how such starts are left out
     const std::size_t clear = task.starts.size() - found.count();
     if (clear > 0)

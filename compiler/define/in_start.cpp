@@ -156,6 +156,26 @@ Alike alike_of(const Model& model, const Scenery& scenery, const Phrase& phrase)
   return alike;
 }
 
+std::string unsaid_in(const Model& model, const Task& task, const Phrase& phrase) {
+  const Scenery scenery = scenery_of(model, task);
+  const Alike alike = alike_of(model, scenery, phrase);
+  std::string first;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scenery.things.size(); ++i) {
+    const std::uint16_t body = scenery.bodies[i];
+    const auto is_in = [&](const auto& all) { return std::ranges::find(all, body) != all.end(); };
+    if (!is_in(alike.all) || is_in(alike.sure)) continue;
+    if (count++ == 0) first = model.objects[scenery.things[i]].name;
+  }
+  if (count == 0) return {};
+  const std::string who = "`" + first + "`" +
+                          (count == 1   ? " does"
+                           : count == 2 ? " and one other do"
+                                        : " and " + std::to_string(count - 1) + " others do");
+  return who + " not say what `" + phrase.means_text +
+         "` asks for and may be meant, too: say it of them, or ask for a fact";
+}
+
 std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model, const Scenery& scenery,
                                                          const QueryOp& op, std::uint16_t described,
                                                          const Alike& alike) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct Alike {
   std::vector<std::uint16_t> sure, all;  // for certain, and with those that may be
 };
 Alike alike_of(const Model& model, const Scenery& scenery, const Phrase& phrase);
+// Things of the task that do not say an attribute for which the phrase asks, in words: where they
+// are decides nothing of them. Empty where all say it.
+std::string unsaid_in(const Model& model, const Task& task, const Phrase& phrase);
 
 // The bodies of a relation of a phrase, `described` first; nothing where it holds of none: to an
 // object that is not there, to itself, or among those alike of which it is the only one.

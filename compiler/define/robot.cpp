@@ -303,9 +303,22 @@ void check_mesh_count(Context& context, const Robot& robot) {
                      " meshes in a robot description, found " + std::to_string(files.size()));
 }
 
-void load_model(Context& context, std::span<const WrittenDrive> drives, Robot& robot) {
+// Drives of a copied hand, of which a robot that has none may keep the joints, fixed, or not.
+void drop_copied_hand(const Span& own, std::vector<WrittenDrive>& drives, const Robot& robot) {
+  std::erase_if(drives, [&](const WrittenDrive& drive) {
+    if (is_within(drive.joint.span, own)) return false;
+    const int joint = robot.model->find_joint(drive.joint.text);
+    return joint < 0 || robot.model->joints[static_cast<std::size_t>(joint)].kind ==
+                            robot::JointKind::kFixed;
+  });
+}
+
+// `own`: the robot's text, without that of what it copies.
+void load_model(Context& context, const Span& own, std::vector<WrittenDrive>& drives,
+                Robot& robot) {
   robot.model = described_by(context, robot.urdf, "the robot description");
   if (!robot.model) return;
+  if (robot.fingers.empty()) drop_copied_hand(own, drives, robot);
   check_mesh_count(context, robot);
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);
@@ -360,7 +373,7 @@ void read_robot(Context& context, const Declared<syntax::RobotDecl>& declared,
         .report(Situation::kNoFingers, reader.grip_span, "`grip` of a robot that has `fingers none`");
   }
   need(reader.has_drive, "drive");
-  if (!robot.urdf.span.is_none()) load_model(context, reader.drives, robot);
+  if (!robot.urdf.span.is_none()) load_model(context, declared.decl->span, reader.drives, robot);
   // What is wrong so far may be why a joint is not the arm's.
   const bool clean = context.mistakes() == errors;
   // Of a law that is refused nothing is lacking.

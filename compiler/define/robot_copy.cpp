@@ -37,6 +37,19 @@ RobotText over(const RobotText& copied, const syntax::RobotDecl& own) {
       }
     }
   }
+  // A hand that was copied goes with its fingers.
+  const auto is_own = [&](const syntax::RobotStmt* stmt) {
+    return stmt >= own.body.data() && stmt < own.body.data() + own.body.size();
+  };
+  const bool is_bare = std::ranges::any_of(own.body, [](const syntax::RobotStmt& stmt) {
+    const auto* fingers = std::get_if<syntax::FingersStmt>(&stmt);
+    return fingers != nullptr && fingers->fingers.empty();
+  });
+  if (is_bare) {
+    std::erase_if(out.statements, [&](const syntax::RobotStmt* stmt) {
+      return std::holds_alternative<syntax::GripStmt>(*stmt) && !is_own(stmt);
+    });
+  }
   return out;
 }
 

@@ -109,9 +109,10 @@ class StartTable {
         context_
             .report(Situation::kStartsColumns, cells[i].span,
                     "unknown column `" + std::string(cells[i].text) + "`")
-            .help(near ? "did you mean `" + std::string(*near) + "`?"
-                       : "the columns are start, object, x_m, y_m and, if wanted, z_m, qw, qx, qy, "
-                         "qz and value");
+            .help(near && cells[i].text.size() > 2
+                      ? "did you mean `" + std::string(*near) + "`?"
+                      : "the columns are start, object, x_m, y_m and, if wanted, z_m, qw, qx, qy, "
+                        "qz and value");
         return false;
       }
       auto& at = at_[static_cast<std::size_t>(known - kColumns.begin())];
@@ -168,6 +169,8 @@ class StartTable {
       if (length > 0)
         said.help(fmt::format("divided by its length it is {:.6g},{:.6g},{:.6g},{:.6g}", q[0] / length,
                               q[1] / length, q[2] / length, q[3] / length));
+      else
+        said.help("what is not turned has 1,0,0,0");
       return std::nullopt;
     }
     for (double& value : q) value /= length;

@@ -470,8 +470,12 @@ void report_unclear(Context& context, Relations& relations, const Task& task,
     };
     add(wrong, " are not so of `" + model.objects[wanted].name + "`");
     add(others, " are so of another thing, too");
-    add(close, " are too close to call, as things come to rest a little beside where they are put");
+    const std::string unsaid = close > 0 ? unsaid_in(model, task, phrase) : "";
+    add(close, unsaid.empty()
+                   ? " are too close to call, as things come to rest a little beside where they are put"
+                   : " cannot be told");
     if (!sum.empty()) said.note("\"" + phrase.text.text + "\": " + sum);
+    if (!unsaid.empty()) said.note(unsaid);
   }
   std::string places;
   for (const Start::Placed& placed : starts.front().placed)

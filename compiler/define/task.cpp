@@ -255,6 +255,8 @@ bool TaskTable::check_filled(const Task& task, bool& poisoned) {
   for (const Orient& line : layout.orients) place(line.what);
   for (const ClearPhrase& clear : task.clear)
     spoken.try_emplace(clear.role, clear.phrase.span, "its starts are chosen by it");
+  for (const auto& [role, refer] : task.refer)
+    spoken.try_emplace(role, refer.span, "how it is called is said here");
   for (const auto& [role, where] : spoken) {
     if (!task.objects_in(role).empty()) continue;
     is_complete = false;

@@ -49,6 +49,20 @@ TEST_CASE("a phrase of places is clear where the relation holds of its object al
   CHECK(said(row("10cm", "-20cm", "0cm", "20cm"), "amid", "blue, pale") == "");
 }
 
+TEST_CASE("who does not say what the words ask for is named where nothing else is in the way") {
+  const std::string text =
+      std::string(test::kChest) + row("-5cm", "35cm", "15cm") +
+      "fixture coffer like chest { at (0cm, -35cm, 85cm) yaw -90deg; part drawer link drawer name \"drawer\" { color blue } }\n"
+      "scene hall like bench { fixture coffer }\n"
+      "task t like base { scene hall; source sided; target tray; distractors blue; layout row";
+  const auto also = test::analyze_with_suite(text + "; refer source as side }")->said();
+  CHECK_MESSAGE(also.find("note: `coffer.drawer` does not say what `category toy and "
+                          "leftmost` asks for and may be meant, too") != std::string::npos,
+                also);
+  const auto clear = test::analyze_with_suite(text + " where clear side of source }")->said();
+  CHECK_MESSAGE(clear.find("cannot be told") != std::string::npos, clear);
+}
+
 TEST_CASE("what the words denote in that start is said, and what they lack in the scene") {
   CHECK(said(row("20cm", "-20cm"), "side").find("note: there it denotes `blue`\n") !=
         std::string::npos);

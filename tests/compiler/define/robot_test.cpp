@@ -83,11 +83,27 @@ TEST_CASE("a copy of a robot replaces what it says, joint by joint, and keeps th
   CHECK(slow.urdf.text == arm.urdf.text);
 }
 
+TEST_CASE("a copy without fingers has no grip either, unless it says one") {
+  // The joints of the hand move still.
+  const auto bare = analyze_with_suite("robot odd like arm { fingers none }");
+  CHECK_MESSAGE(bare->codes() == "P1004", bare->said());
+  // Of the copied hand, whose joints its description fixes, no drive is left.
+  const std::string root = probe::test::asset_root();
+  std::string text = probe::test::arm_urdf();
+  for (std::size_t at; (at = text.find("prismatic")) != std::string::npos;)
+    text.replace(at, 9, "fixed");
+  probe::test::write_text(std::filesystem::path(root) / "arm/handless.urdf", text);
+  const auto handless =
+      analyze_with_suite("robot odd like arm { urdf \"arm/handless.urdf\"; fingers none }");
+  CHECK_MESSAGE(handless->codes() == "", handless->said());
+  const auto gripping = analyze_with_suite("robot odd like arm { fingers none; grip 1cm .. 4cm }");
+  CHECK_MESSAGE(gripping->codes() == "P1003", gripping->said());
+}
+
 TEST_CASE("a copy of a robot is told where what it copied does not fit") {
-  // The drive is the copied robot's, whose law wants what this one forbids.
-  const auto other = analyze_with_suite("robot odd like arm { fingers none }");
-  CHECK(other->said().find("`grip` of a robot that has `fingers none`") != std::string::npos);
-  CHECK(other->said().find("copied by `odd`") != std::string::npos);
+  // The tool is the copied robot's, of a description that this one has not.
+  const auto other = analyze_with_suite("robot odd like arm { urdf \"chest/chest.urdf\" }");
+  CHECK_MESSAGE(other->said().find("copied by `odd`") != std::string::npos, other->said());
   const auto twice = analyze_with_suite(
       "robot odd like arm { drive l stiffness 2000N/m damping 300Ns/m limit 70N\n"
       "drive l stiffness 1000N/m damping 300Ns/m limit 70N }");
