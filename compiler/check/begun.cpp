@@ -1,6 +1,7 @@
 // P0607: success that is true before anything has moved, in starts of a task, what is asked "was it
-// ever so" and is so in all of them, and what brings a later sentence and is so in some. A policy that does nothing has them. What is not known
-// before things settle, as whether one lies on another, says nothing here.
+// ever so" and is so in all of them, and what brings a later sentence and is so in some. A policy
+// that does nothing has them. What is not known before things settle, as whether one lies on
+// another, says nothing here.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -82,7 +83,8 @@ class BegunChecker {
 
   // "2 of 24 starts: 3, 7"
   static std::string in_words(const std::vector<std::size_t>& begun, std::size_t of) {
-    if (begun.size() == of) return of == 1 ? "its one start" : "all of its " + std::to_string(of) + " starts";
+    if (begun.size() == of)
+      return of == 1 ? "its one start" : "all of its " + std::to_string(of) + " starts";
     std::string text = std::to_string(begun.size()) + " of " + std::to_string(of) + " starts: ";
     for (std::size_t i = 0; i < begun.size() && i < kMostNamed; ++i)
       text += (i == 0 ? "" : ", ") + std::to_string(begun[i]);
@@ -169,10 +171,9 @@ class BegunChecker {
 
   void report(const Task& task, const Metric& metric, const std::vector<std::size_t>& begun) {
     const About about(reporter_, task.decl_span);
-    report_of(
-        reporter_, Code::P0607, task, task.span,
-        "`" + metric.name + "` of `" + task.name + "` is true before anything moves in " +
-            in_words(begun, task.starts.size()))
+    report_of(reporter_, Code::P0607, task, task.span,
+              "`" + metric.name + "` of `" + task.name + "` is true before anything moves in " +
+                  in_words(begun, task.starts.size()))
         .label(metric.span, "judged by this")
         .help(metric.name == "success"
                   ? "place things so that none begins so, or ask for what has to move as well: `.. "

@@ -308,8 +308,8 @@ void drop_copied_hand(const Span& own, std::vector<WrittenDrive>& drives, const 
   std::erase_if(drives, [&](const WrittenDrive& drive) {
     if (is_within(drive.joint.span, own)) return false;
     const int joint = robot.model->find_joint(drive.joint.text);
-    return joint < 0 || robot.model->joints[static_cast<std::size_t>(joint)].kind ==
-                            robot::JointKind::kFixed;
+    return joint < 0 ||
+           robot.model->joints[static_cast<std::size_t>(joint)].kind == robot::JointKind::kFixed;
   });
 }
 

@@ -471,9 +471,10 @@ void report_unclear(Context& context, Relations& relations, const Task& task,
     add(wrong, " are not so of `" + model.objects[wanted].name + "`");
     add(others, " are so of another thing, too");
     const std::string unsaid = close > 0 ? unsaid_in(model, task, phrase) : "";
-    add(close, unsaid.empty()
-                   ? " are too close to call, as things come to rest a little beside where they are put"
-                   : " cannot be told");
+    add(close,
+        unsaid.empty()
+            ? " are too close to call, as things come to rest a little beside where they are put"
+            : " cannot be told");
     if (!sum.empty()) said.note("\"" + phrase.text.text + "\": " + sum);
     if (!unsaid.empty()) said.note(unsaid);
   }

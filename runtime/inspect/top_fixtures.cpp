@@ -83,9 +83,8 @@ std::vector<BegunJoints> begun_joints(const plan::Plan& plan, const plan::TaskRe
     const std::vector<double> joints = plan::joint_starts_of(plan.tables(), scene, episode);
     const std::span<const double> here = std::span(joints).subspan(first, count);
     const auto known = std::ranges::find_if(all, [&](const BegunJoints& begun) {
-      return std::ranges::equal(begun.joints, here, [](double a, double b) {
-        return std::abs(a - b) < kAlike;
-      });
+      return std::ranges::equal(begun.joints, here,
+                                [](double a, double b) { return std::abs(a - b) < kAlike; });
     });
     if (known == all.end()) {
       all.push_back({{here.begin(), here.end()}, {start}});

@@ -141,8 +141,8 @@ std::vector<double> begins_as(const plan::Plan& plan, std::uint32_t task, std::u
   for (std::size_t i = 0; i < bodies.size() && i < placements.size(); ++i) {
     if (static_cast<plan::BodyKind>(bodies[i].kind) != plan::BodyKind::kObject) continue;
     const plan::ObjectRecord& object = plan.objects()[bodies[i].index];
-    for (const Vec3& size : {half_extents(object, placements[i].rotation),
-                             middle_of(object, placements[i].rotation)})
+    for (const Vec3& size :
+         {half_extents(object, placements[i].rotation), middle_of(object, placements[i].rotation)})
       all.insert(all.end(), size.begin(), size.end());
   }
   return all;

@@ -54,7 +54,6 @@ std::vector<double> begins_as(const plan::Plan& plan, std::uint32_t task, std::u
 // recorded ones differ by a hair. 0 of a task without starts.
 std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t task);
 
-
 // How what a layout puts on another object comes to rest: its lower side on the other's upper side,
 // or just above the other's lower side, as in a hollow thing.
 enum class Lies : std::uint8_t { kOn, kIn };

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "tests/parity/published.h"
 
@@ -112,4 +113,81 @@ TEST_CASE("every start can be solved") {
   }
   MESSAGE("expert: " << successes << " of " << episodes);
   CHECK(successes * 100 >= episodes * 97);
+}
+
+namespace {
+
+// A table of floors beside a suite: its first line is the plan's root, a row has a task, or a
+// family of tasks, and a policy.
+struct FloorsOf {
+  const char* table;
+  const char* text;
+  const char* suite;
+};
+
+constexpr FloorsOf kKitchen = {"/suite/kitchen/floors.csv", "/suite/kitchen.probe", "kitchen"};
+constexpr FloorsOf kGoogle = {"/suite/google/floors.csv", "/suite/google/one_colouring.probe",
+                              "google_one_colouring"};
+
+// By column, of the rows of one policy.
+using Row = std::map<std::string, std::string>;
+std::vector<Row> rows_of(const FloorsOf& floors, const std::string& policy) {
+  std::ifstream in(std::string(VLAPROBE_SOURCE_DIR) + floors.table);
+  REQUIRE(in.good());
+  std::string line, header;
+  std::getline(in, line);  // the plan
+  std::getline(in, header);
+  std::vector<Row> rows;
+  while (std::getline(in, line)) {
+    std::stringstream names(header), cells(line);
+    std::string name, cell;
+    Row row;
+    while (std::getline(names, name, ',') && std::getline(cells, cell, ',')) row[name] = cell;
+    if (row["policy"] == policy) rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+int sum(const std::vector<Row>& rows, const char* column) {
+  int all = 0;
+  for (const Row& row : rows) all += std::stoi(row.at(column));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("tables of floors beside suites are of the plans that the texts make now") {
+  const std::string root = VLAPROBE_SOURCE_DIR;
+  for (const FloorsOf& floors : {kKitchen, kGoogle}) {
+    CAPTURE(floors.table);
+    const std::vector<std::string> files = {root + floors.text};
+    auto built = build(files, {.asset_root = root + "/assets",
+                               .suite = floors.suite,
+                               .library_folders = {root + "/dsl", root}});
+    REQUIRE(built.ok());
+    const auto plan = plan::Plan::from_bytes(std::move(built->plan));
+    REQUIRE(plan.ok());
+    std::ifstream in(root + floors.table);
+    std::string line;
+    REQUIRE(std::getline(in, line));
+    CHECK(line == "# plan " + to_hex(plan->root()));
+  }
+}
+
+TEST_CASE("in the kitchen the expert does 99 of 100 starts, and who understands nothing none") {
+  const std::vector<Row> expert = rows_of(kKitchen, "expert");
+  CHECK(expert.size() == 24);
+  CHECK(sum(expert, "episodes") == 576);
+  CHECK(sum(expert, "attempted") == 576);
+  CHECK(sum(expert, "success") * 100 >= 576 * 99);
+  for (const char* policy : {"null", "random", "reach", "wrong"}) {
+    CAPTURE(policy);
+    const std::vector<Row> rows = rows_of(kKitchen, policy);
+    CHECK(rows.size() == 24);
+    CHECK(sum(rows, "episodes") == 576);
+    CHECK(sum(rows, "success") == 0);
+  }
+  CHECK(sum(rows_of(kKitchen, "null"), "intention") == 0);
+  CHECK(sum(rows_of(kKitchen, "wrong"), "intention") == 0);
+  CHECK(sum(rows_of(kKitchen, "reach"), "intention") == 576);
 }

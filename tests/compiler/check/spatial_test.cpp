@@ -52,7 +52,8 @@ TEST_CASE("a phrase of places is clear where the relation holds of its object al
 TEST_CASE("who does not say what the words ask for is named where nothing else is in the way") {
   const std::string text =
       std::string(test::kChest) + row("-5cm", "35cm", "15cm") +
-      "fixture coffer like chest { at (0cm, -35cm, 85cm) yaw -90deg; part drawer link drawer name \"drawer\" { color blue } }\n"
+      "fixture coffer like chest { at (0cm, -35cm, 85cm) yaw -90deg; part drawer link drawer name "
+      "\"drawer\" { color blue } }\n"
       "scene hall like bench { fixture coffer }\n"
       "task t like base { scene hall; source sided; target tray; distractors blue; layout row";
   const auto also = test::analyze_with_suite(text + "; refer source as side }")->said();

@@ -333,8 +333,9 @@ TEST_CASE("a drawer that begins elsewhere in each start is shown by where it beg
   const auto view = inspect::top_view(plan, task, (kRoot / "assets").string());
   REQUIRE(view.ok());
   const std::string svg = inspect::to_svg(*view);
-  for (const char* drawn : {"<title>cabinet.top_drawer: starts 0<", "<title>cabinet.top_drawer: starts 1<",
-                            "<title>cabinet.bottom_drawer<"})
+  for (const char* drawn :
+       {"<title>cabinet.top_drawer: starts 0<", "<title>cabinet.top_drawer: starts 1<",
+        "<title>cabinet.bottom_drawer<"})
     CHECK_MESSAGE(svg.find(drawn) != std::string::npos, drawn);
 }
 

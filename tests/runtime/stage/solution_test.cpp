@@ -82,7 +82,8 @@ std::string table_of(const std::string& joints) {
   for (std::size_t from = 0; from < joints.size(); ++start) {
     const std::size_t end = joints.find(';', from);
     const std::string number = std::to_string(start);
-    rows += number + ",source,-0.2,0.1,0.92,1,0,0,0,\n" + number + ",target,-0.2,-0.1,0.92,1,0,0,0,\n";
+    rows +=
+        number + ",source,-0.2,0.1,0.92,1,0,0,0,\n" + number + ",target,-0.2,-0.1,0.92,1,0,0,0,\n";
     const std::string here = joints.substr(from, end - from);
     const std::size_t comma = here.find(',');
     rows += number + ",cabinet.top,,,,,,,," + here.substr(0, comma) + "\n";
@@ -217,7 +218,8 @@ suite all { tasks { ordered, free }; seeds 0 }
 TEST_CASE("what is to be done is found for each start, as its joints begin") {
   const plan::Plan plan = kitchen_of(R"(
 use "std/place.probe"
-layout begun { starts ")" + table_of("0,0;0.13,0;0.13,0.13;") + R"("; drop 1cm settle 0.5s }
+layout begun { starts ")" + table_of("0,0;0.13,0;0.13,0.13;") +
+                                     R"("; drop 1cm settle 0.5s }
 abstract task begins like kept { scene drawers; layout begun }
 metrics laid { success = at end (on_top_of(source, target) and closed(cabinet.top_drawer)) }
 metrics shut { success = at end (closed(cabinet.top_drawer) and travel(cabinet.middle) < 1cm) }
