@@ -25,6 +25,7 @@ struct FloorTable {
 constexpr FloorTable kTables[] = {
     {"google/floors.csv", "google/one_colouring.probe", "google_one_colouring"},
     {"google/expert.csv", "", ""},
+    {"kitchen/floors.csv", "kitchen.probe", "kitchen"},
 };
 
 plan::Plan compiled(const std::string& text, const std::string& suite) {

@@ -117,22 +117,10 @@ TEST_CASE("every start can be solved") {
 
 namespace {
 
-// A table of floors beside a suite: its first line is the plan's root, a row has a task, or a
-// family of tasks, and a policy.
-struct FloorsOf {
-  const char* table;
-  const char* text;
-  const char* suite;
-};
-
-constexpr FloorsOf kKitchen = {"/suite/kitchen/floors.csv", "/suite/kitchen.probe", "kitchen"};
-constexpr FloorsOf kGoogle = {"/suite/google/floors.csv", "/suite/google/one_colouring.probe",
-                              "google_one_colouring"};
-
 // By column, of the rows of one policy.
 using Row = std::map<std::string, std::string>;
-std::vector<Row> rows_of(const FloorsOf& floors, const std::string& policy) {
-  std::ifstream in(std::string(VLAPROBE_SOURCE_DIR) + floors.table);
+std::vector<Row> kitchen_rows(const std::string& policy) {
+  std::ifstream in(VLAPROBE_SOURCE_DIR "/suite/kitchen/floors.csv");
   REQUIRE(in.good());
   std::string line, header;
   std::getline(in, line);  // the plan
@@ -156,38 +144,20 @@ int sum(const std::vector<Row>& rows, const char* column) {
 
 }  // namespace
 
-TEST_CASE("tables of floors beside suites are of the plans that the texts make now") {
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  for (const FloorsOf& floors : {kKitchen, kGoogle}) {
-    CAPTURE(floors.table);
-    const std::vector<std::string> files = {root + floors.text};
-    auto built = build(files, {.asset_root = root + "/assets",
-                               .suite = floors.suite,
-                               .library_folders = {root + "/dsl", root}});
-    REQUIRE(built.ok());
-    const auto plan = plan::Plan::from_bytes(std::move(built->plan));
-    REQUIRE(plan.ok());
-    std::ifstream in(root + floors.table);
-    std::string line;
-    REQUIRE(std::getline(in, line));
-    CHECK(line == "# plan " + to_hex(plan->root()));
-  }
-}
-
 TEST_CASE("in the kitchen the expert does 99 of 100 starts, and who understands nothing none") {
-  const std::vector<Row> expert = rows_of(kKitchen, "expert");
+  const std::vector<Row> expert = kitchen_rows("expert");
   CHECK(expert.size() == 24);
   CHECK(sum(expert, "episodes") == 576);
   CHECK(sum(expert, "attempted") == 576);
   CHECK(sum(expert, "success") * 100 >= 576 * 99);
   for (const char* policy : {"null", "random", "reach", "wrong"}) {
     CAPTURE(policy);
-    const std::vector<Row> rows = rows_of(kKitchen, policy);
+    const std::vector<Row> rows = kitchen_rows(policy);
     CHECK(rows.size() == 24);
     CHECK(sum(rows, "episodes") == 576);
     CHECK(sum(rows, "success") == 0);
   }
-  CHECK(sum(rows_of(kKitchen, "null"), "intention") == 0);
-  CHECK(sum(rows_of(kKitchen, "wrong"), "intention") == 0);
-  CHECK(sum(rows_of(kKitchen, "reach"), "intention") == 576);
+  CHECK(sum(kitchen_rows("null"), "intention") == 0);
+  CHECK(sum(kitchen_rows("wrong"), "intention") == 0);
+  CHECK(sum(kitchen_rows("reach"), "intention") == 576);
 }
