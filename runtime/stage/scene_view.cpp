@@ -258,7 +258,9 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
   if (record.photo != plan::kNone && eye.moving_mount < 0) {
     eye.photo = assets_->photo(record.photo);
-    PROBE_TRY(check_shape(*eye.photo, camera, where));
+    PROBE_TRY(check_shape(
+        *eye.photo, camera,
+        where + ", photo `" + std::string(plan.text(plan.assets()[record.photo].path)) + "`"));
   }
   PROBE_ASSIGN(eye.renderer, open_renderer(eye));
   return eye;

@@ -5,7 +5,7 @@
 //   starts FILE.probe.. --assets DIR [--suite NAME] [--policy expert] [--tasks GLOB]
 //     [--starts 0,11,30-35] [--jobs 2] [-o rows.csv] [--watch]
 //
-// Without --suite: all tasks of all suites of each file.
+// Without --suite: all tasks of all suites of each file. GLOB is of names without a suite's prefix.
 // --watch tells of every tenth step where the tool, the objects and the joints of fixtures are.
 #include <algorithm>
 #include <atomic>
