@@ -30,8 +30,9 @@ constexpr FloorTable kTables[] = {
 
 plan::Plan compiled(const std::string& text, const std::string& suite) {
   const std::string file = kSuites + text;
-  auto built =
-      build(std::span<const std::string>(&file, 1), {VLAPROBE_SOURCE_DIR "/assets", suite});
+  CompileOptions options{VLAPROBE_SOURCE_DIR "/assets", suite};
+  options.library_folders = {VLAPROBE_SOURCE_DIR "/dsl"};
+  auto built = build(std::span<const std::string>(&file, 1), options);
   REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
   REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
   auto plan = plan::Plan::from_bytes(std::move(built->plan));
