@@ -34,7 +34,8 @@ class TreeCopy {
   TreeCopy() {
     std::string pattern = (fs::temp_directory_path() / "probe_tree_XXXXXX").string();
     folder_ = mkdtemp(pattern.data());
-    for (const char* part : {"suite", "suite/google", "suite/google/starts", "examples", "dsl/std"}) {
+    for (const char* part :
+         {"suite", "suite/kitchen", "suite/google", "suite/google/starts", "examples", "dsl/std"}) {
       fs::create_directories(folder_ / part);
       for (const auto& entry : fs::directory_iterator(fs::path(VLAPROBE_SOURCE_DIR) / part)) {
         const fs::path copy = folder_ / part / entry.path().filename();
