@@ -6,8 +6,10 @@
 #include <set>
 
 #include "runtime/ask/answer_fields.h"
+#include "runtime/ask/answer_table.h"
 #include "runtime/ask/answers.h"
 #include "runtime/ask/vouch.h"
+#include "runtime/base/paths.h"
 #include "runtime/plan/family_name.h"
 
 namespace probe::ask {
@@ -142,12 +144,22 @@ Result<store::MergeSummary> merge(const store::MergeOptions& options) {
   PROBE_ASSIGN(const auto there, find_ask_record(options.out));
   std::vector<AnswerSource> sources;
   for (const std::string& dir : folders(options, there.has_value())) {
+    // Its database is made before anything stands in it.
+    if (is_there(answers_path(dir))) {
+      PROBE_ASSIGN(const auto begun, find_ask_record(dir));
+      if (!begun) {
+        summary.notes.push_back(dir + " has no answers: what asked was cut off as it began");
+        continue;
+      }
+    }
     auto record = read_ask_record(dir);
     if (!record)
       return Failure{Fault::kUsage, "cannot be merged: " + record.failure().message, dir};
     PROBE_ASSIGN(auto calls, read_ask_calls(dir));
     sources.push_back({dir, std::move(*record), std::move(calls)});
   }
+  if (sources.empty())
+    return Failure{Fault::kUsage, "none of these folders has answers", options.dirs.front()};
   PROBE_TRY(check_same_asking(sources, options.mixed_builds, summary.notes));
   for (const AnswerSource& source : sources) {
     if (auto own = open_asked_plan(source.dir); !own) return own.failure();

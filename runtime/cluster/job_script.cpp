@@ -148,8 +148,8 @@ std::string sbatch_option(std::string_view option) {
 // An option's name in full, "--time" of "-t5"; of a short one that stands here for nothing, itself.
 std::string_view long_name(std::string_view option) {
   constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-      {"-A", "--account"}, {"-M", "--clusters"}, {"-p", "--partition"},
-      {"-q", "--qos"},     {"-t", "--time"},
+      {"-A", "--account"},   {"-C", "--constraint"}, {"-M", "--clusters"},
+      {"-p", "--partition"}, {"-q", "--qos"},        {"-t", "--time"},
   };
   if (option.starts_with("--")) return option.substr(0, option.find_first_of("= "));
   for (const auto& [brief, full] : kNames) {
@@ -167,7 +167,10 @@ Status add_options(std::string& text, const std::vector<std::string>& options, c
   return {};
 }
 
-bool says_time(const std::string& option) { return long_name(option) == "--time"; }
+bool says_time(const std::string& option) {
+  const std::string_view name = long_name(option);
+  return name == "--time" || name == "--tim";  // sbatch takes what begins no other option
+}
 
 // "1-02:30:00", whole minutes.
 std::string time_text(std::int64_t seconds) {
@@ -264,8 +267,9 @@ Result<std::string> to_text(const JobScript& script) {
 Result<std::string> merge_text(const JobScript& script, bool mixed_builds) {
   std::vector<std::string> options = script.sbatch;
   std::erase_if(options, [](const std::string& option) {
-    constexpr std::string_view kOfWhom[] = {"--account", "--clusters", "--partition", "--qos",
-                                            "--reservation"};
+    constexpr std::string_view kOfWhom[] = {"--account",   "--clusters", "--constraint",
+                                            "--partition", "--qos",      "--reservation",
+                                            "--wckey"};
     return std::ranges::find(kOfWhom, long_name(option)) == std::end(kOfWhom);
   });
   std::string text =
@@ -276,9 +280,11 @@ Result<std::string> merge_text(const JobScript& script, bool mixed_builds) {
   const std::string out = shell_word(script.out);
   text += "\nout=" + out + "\nexec >>\"$out/slurm/log/merge.txt\" 2>&1\n";
   text += "echo \"job $SLURM_JOB_ID on $(hostname), $(date '+%F %T')\"\n";
-  // A shard that was killed as it began has no rows.
   text += "begun=()\nfor rows in \"$out\"/shards/*-of-" + std::to_string(script.tasks) +
           "/*.sqlite; do [ -e \"$rows\" ] && begun+=(\"${rows%/*}\"); done\n";
+  text +=
+      "if [ ${#begun[@]} -eq 0 ]; then echo \"no shard has begun: $out/slurm/log has what each "
+      "said\"; exit 1; fi\n";
   text += "exec " + shell_word(script.program) + " merge \"${begun[@]}\" -o \"$out\"" +
           (mixed_builds ? " --mixed-builds" : "") + "\n";
   return text;

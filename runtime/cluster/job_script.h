@@ -41,7 +41,7 @@ struct JobScript {
 Result<std::string> to_text(const JobScript& script);
 
 // The job that joins the shards when the other has ended. Of the options of sbatch it takes those
-// that say who asks and where: account, clusters, partition, qos, reservation.
+// that say who asks and where: account, clusters, constraint, partition, qos, reservation, wckey.
 Result<std::string> merge_text(const JobScript& script, bool mixed_builds);
 
 // The folder of one shard's run below `out`: "shards/2-of-4".

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "runtime/base/paths.h"
 #include "runtime/store/store.h"
 
 namespace probe::cluster {
@@ -31,15 +32,22 @@ Result<MeasuredTime> measured_time(const std::string& dir) {
       PROBE_TRY(add(shard.path().string()));
   }
   if (time.episodes == 0) {
-    return Failure{Fault::kUsage,
-                   dir +
-                       " holds no call of `run` that ended with an episode: run some there first, "
-                       "`vlaprobe run F .. --episodes 0-0 -o " +
-                       dir + "`",
-                   "--time-from"};
+    return Failure{
+        Fault::kUsage,
+        !is_there(dir)
+            ? dir + " is not there"
+            : dir +
+                  " holds no call of `run` that ended with an episode: run some first, as "
+                  "`vlaprobe run F .. --episodes 0-0 -o trial` does, and name that folder",
+        "--time-from"};
   }
   time.seconds = spent / time.episodes;
   return time;
+}
+
+double time_for(const MeasuredTime& measured, std::int64_t episodes, int worlds) {
+  const std::int64_t rounds = (episodes + worlds - 1) / worlds;
+  return 1.5 * measured.seconds * static_cast<double>(rounds);
 }
 
 }  // namespace probe::cluster

@@ -180,6 +180,55 @@ void note_unfinished(const std::map<int, std::int64_t>& lacking, const ArrayWork
   }
 }
 
+// Submits what there is to do and does not wait: the array where a shard lacks something, and what
+// joins its shards. Reads shards, and joins none: this may be a login node. `report` has the jobs
+// that are under way.
+Result<SlurmReport> detach(const ArrayWork& work, const ArrayOptions& options,
+                           const std::string& out, SlurmReport report) {
+  const fs::path folder = fs::path(out) / "slurm";
+  const auto tell = [&](const std::string& sentence) {
+    if (options.tell) options.tell(sentence);
+  };
+  PROBE_ASSIGN(auto lacking, work.missing(out, options.script.tasks));
+  report.stored = report.total - sum_of(lacking);
+  if (!report.merge_job.empty() || (lacking.empty() && report.job.empty())) {
+    if (!report.merge_job.empty())
+      tell("nothing is submitted: job " + report.merge_job + " is under way");
+    return report;
+  }
+  // What shards have that were not joined yet.
+  std::erase_if(lacking, [&](auto& entry) {
+    auto& [shard, count] = entry;
+    const std::string dir = out + "/" + shard_folder(shard, options.script.tasks);
+    const auto begun = work.is_begun(dir);
+    if (!begun || !*begun) return false;
+    const auto left = work.missing(dir, options.script.tasks);
+    if (!left) return false;
+    const auto own = left->find(shard);
+    return own == left->end();
+  });
+  if (report.job.empty() && !lacking.empty()) {
+    PROBE_ASSIGN(report.job, submit(report.script));
+    PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
+    tell("job " + report.job + " submitted");
+  }
+  auto sent = submit(folder / "merge.sh", report.job);
+  if (!sent) {
+    Failure refused = sent.failure();
+    refused.message += report.job.empty() ? ""
+                                          : "; job " + report.job +
+                                                " goes on, and the same command submits this again";
+    return refused;
+  }
+  report.merge_job = *sent;
+  PROBE_TRY(
+      write_file((folder / "merge_job").string(), std::as_bytes(std::span(report.merge_job))));
+  tell("job " + report.merge_job + " joins the shards" +
+       (report.job.empty() ? "" : " when job " + report.job + " has ended") + "; it speaks in " +
+       (folder / "log/merge.txt").string());
+  return report;
+}
+
 class RunWork final : public ArrayWork {
  public:
   RunWork(const plan::Plan& plan, const run::RunOptions& options, std::set<EpisodeKey> chosen)
@@ -242,8 +291,8 @@ class RunWork final : public ArrayWork {
   std::set<EpisodeKey> chosen_;
 };
 
-// Of the task that lacks the most: as long as its episodes took before and half as long again, the
-// server's wait, and five minutes to begin.
+// Of the task that lacks the most, with the server's wait and five minutes to begin; 0 where
+// nothing is lacking.
 Result<std::int64_t> time_by(const SlurmOptions& options, const RunWork& work) {
   constexpr std::int64_t kBegin = 300;  // s
   PROBE_ASSIGN(const MeasuredTime measured, measured_time(options.time_from));
@@ -253,7 +302,7 @@ Result<std::int64_t> time_by(const SlurmOptions& options, const RunWork& work) {
   for (const auto& [shard, count] : lacking) most = std::max(most, count);
   const std::int64_t begin =
       kBegin + (options.script.server_command.empty() ? 0 : options.script.server_wait_s);
-  const double episodes_s = measured.seconds * static_cast<double>(most) / options.run.jobs;
+  if (most == 0) return 0;
   if (options.tell) {
     options.tell(fmt::format(
         "each task asks for time as measured: {} episodes of {} s by {} at once, half as much "
@@ -264,7 +313,8 @@ Result<std::int64_t> time_by(const SlurmOptions& options, const RunWork& work) {
             : fmt::format(" (measured with {} at once: a server may be slower or faster by that)",
                           measured.worlds)));
   }
-  return begin + static_cast<std::int64_t>(std::ceil(1.5 * episodes_s));
+  return begin + static_cast<std::int64_t>(
+                     std::ceil(time_for(measured, most, std::max(1, options.run.jobs))));
 }
 
 }  // namespace
@@ -313,15 +363,7 @@ Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
 
   PROBE_ASSIGN(report.job, job_under_way(folder / "job"));
   PROBE_ASSIGN(report.merge_job, job_under_way(folder / "merge_job"));
-  if (options.detach && !(report.job.empty() && report.merge_job.empty())) {
-    if (options.tell) {
-      options.tell("nothing is submitted: job " +
-                   (report.job.empty() ? report.merge_job : report.job) + " is under way");
-    }
-    PROBE_ASSIGN(const auto lacking, work.missing(out, options.script.tasks));
-    report.stored = report.total - sum_of(lacking);
-    return report;
-  }
+  if (options.detach) return detach(work, options, out, std::move(report));
   // Two that join would be in each other's way.
   if (!report.merge_job.empty()) {
     if (!report.job.empty()) PROBE_TRY(wait_for(report.job, options));
@@ -335,15 +377,6 @@ Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
     PROBE_ASSIGN(report.job, submit(report.script));
     PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
     if (options.tell) options.tell("job " + report.job + " submitted");
-    if (options.detach) {
-      PROBE_ASSIGN(report.merge_job, submit(folder / "merge.sh", report.job));
-      PROBE_TRY(
-          write_file((folder / "merge_job").string(), std::as_bytes(std::span(report.merge_job))));
-      if (options.tell)
-        options.tell("job " + report.merge_job + " joins its shards when it has ended");
-      report.stored = report.total - sum_of(lacking);
-      return report;
-    }
   }
   if (!report.job.empty()) {
     PROBE_TRY(wait_for(report.job, options));

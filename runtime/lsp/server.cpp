@@ -180,7 +180,13 @@ class TextServer final : public Server {
     } else if (method == "textDocument/didClose") {
       if (workspace_.documents.close(path)) touch(path);
     } else if (method == "workspace/didChangeWatchedFiles") {
-      touch("");
+      const Json* changes = find(params, {"changes"});
+      if (changes == nullptr) return touch("");
+      for (const Json& change : *changes) {
+        // A table is of the programs that read it; a text that is new may be what one lacks.
+        const std::string changed = path_of(read_text(change, {"uri"}));
+        touch(changed.ends_with(".csv") ? changed : "");
+      }
     } else if (method == "workspace/didChangeWorkspaceFolders") {
       const Json* removed = find(params, {"event", "removed"});
       const Json* added = find(params, {"event", "added"});

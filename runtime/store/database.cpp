@@ -51,7 +51,7 @@ int wait_for_lock(void* database, int tries) {
 
 Result<Database> Database::open(const std::string& path, Access access, std::string advice) {
   Database database;
-  database.path_ = path;
+  database.path_ = std::make_unique<std::string>(path);
   database.advice_ = std::move(advice);
   if (is_there(path) && !is_file(path)) {
     return Failure{Fault::kStore, "is no file but a folder, a device or a pipe", path};
@@ -70,8 +70,7 @@ Result<Database> Database::open(const std::string& path, Access access, std::str
     return Failure{Fault::kStore,
                    std::string("cannot be opened: ") + sqlite3_errmsg(database.handle_), path};
   }
-  database.waits_for_ = std::make_unique<std::string>(path);
-  sqlite3_busy_handler(database.handle_, wait_for_lock, database.waits_for_.get());
+  sqlite3_busy_handler(database.handle_, wait_for_lock, database.path_.get());
   distrust(database.handle_);
   if (access == Access::kWrite) PROBE_TRY(database.execute("pragma synchronous = full"));
   return database;
@@ -79,34 +78,37 @@ Result<Database> Database::open(const std::string& path, Access access, std::str
 
 Database::~Database() { sqlite3_close(handle_); }
 
-std::string Database::name() const { return path_.substr(path_.rfind('/') + 1); }
+std::string Database::name() const { return path_->substr(path_->rfind('/') + 1); }
 
 // What SQLite said, with what to do about it.
 Failure Database::failure(Access access) const {
   const int code = sqlite3_errcode(handle_);
   const std::string said = sqlite3_errmsg(handle_);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
-    return {Fault::kStore, name() + " cannot be read (" + said + "); " + advice_, path_};
-  if (code == SQLITE_ERROR && said.starts_with("no such table")) {
+    return {Fault::kStore, name() + " cannot be read (" + said + "); " + advice_, *path_};
+  if (code == SQLITE_ERROR && (said == "no such table: episodes" || said == "no such table: run" ||
+                               said == "no such table: answers")) {
     return {Fault::kStore,
-            name() + " has no rows and no room for them: what writes it was cut off as it began; the "
-                     "same command goes on",
-            path_};
+            name() +
+                " has no rows and no room for them: what writes it was cut off as it began; the "
+                "same command goes on",
+            *path_};
   }
-  if (code == SQLITE_BUSY) {
-    const std::string lack = FolderLock::lack(folder_of(path_));
+  // SQLite takes ENOLCK for a lock of another, and what else says the same for a broken disk.
+  if (const int kind = code & 0xff; kind == SQLITE_BUSY || kind == SQLITE_IOERR) {
+    const std::string lack = FolderLock::lack(folder_of(*path_));
     if (!lack.empty()) {
       return {Fault::kStore,
               lack +
                   ", so that another run could change the results while they are read: copy the "
                   "folder to a disk that has locks, or have this one mounted with them",
-              folder_of(path_)};
+              folder_of(*path_)};
     }
   }
   return {Fault::kStore,
           std::string("the results cannot be ") +
               (access == Access::kRead ? "read: " : "stored: ") + said,
-          path_};
+          *path_};
 }
 
 Status Database::execute(const char* sql) {
@@ -117,7 +119,7 @@ Status Database::execute(const char* sql) {
 Status Database::expect(std::span<const Table> tables) {
   const auto refuse = [&](const std::string& what) {
     return Failure{Fault::kStore, name() + " has " + what + ", which no run makes; " + advice_,
-                   path_};
+                   *path_};
   };
   Statement things(*this, "select type, name, rootpage from sqlite_master");
   std::vector<std::string> found;

@@ -34,7 +34,6 @@ class Database {
   Database(Database&& other) noexcept
       : handle_(std::exchange(other.handle_, nullptr)),
         path_(std::move(other.path_)),
-        waits_for_(std::move(other.waits_for_)),
         advice_(std::move(other.advice_)) {}
   Database& operator=(Database&&) = delete;
 
@@ -47,7 +46,7 @@ class Database {
     std::span<const std::string_view> columns;
   };
   Status expect(std::span<const Table> tables);
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return *path_; }
 
  private:
   friend class Statement;
@@ -55,8 +54,7 @@ class Database {
   Failure failure(Access access) const;
   std::string name() const;  // of the file, without its folder
   sqlite3* handle_ = nullptr;
-  std::string path_;
-  std::unique_ptr<std::string> waits_for_;  // the path, where SQLite finds it though this is moved
+  std::unique_ptr<std::string> path_;  // stays in its place when this is moved: SQLite knows it
   std::string advice_;
 };
 

@@ -68,10 +68,14 @@ bool FolderLock::is_taken(const std::string& dir) {
   return false;
 }
 
-// Asked at the lock file: whoever closes a database gives away all locks that the process has on
-// it.
+// Asked at another file than the database: whoever closes that gives away all locks that the
+// process has on it.
 std::string FolderLock::lack(const std::string& dir) {
-  const int file = ::open((dir + "/lock").c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  int file = -1;
+  for (const char* name : {"/lock", "/suite.plan"}) {
+    if (file < 0)
+      file = ::open((dir + name).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  }
   if (file < 0) return {};
   struct flock asked {};
   asked.l_type = F_RDLCK;

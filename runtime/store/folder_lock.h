@@ -22,7 +22,7 @@ class FolderLock {
   // it.
   static bool is_taken(const std::string& dir);
   // "its file system gives no locks (No locks available)", of the locks on parts of files that a
-  // database takes; empty: it gives them, or the folder has no lock file to ask at.
+  // database takes; empty: it gives them, or the folder has no file to ask at.
   static std::string lack(const std::string& dir);
   FolderLock(FolderLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
   FolderLock& operator=(FolderLock&&) = delete;

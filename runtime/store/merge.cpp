@@ -230,9 +230,20 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   std::vector<Source> sources;
   PROBE_ASSIGN(const auto there, find_run_record(options.out));
   for (const std::string& dir : folders_of(options, there.has_value())) {
+    // Its database is made before anything stands in it.
+    if (is_there(dir + "/results.sqlite")) {
+      PROBE_ASSIGN(const auto record, find_run_record(dir));
+      if (!record) {
+        summary.notes.push_back(dir + " has no rows: its run was cut off as it began");
+        continue;
+      }
+    }
     PROBE_ASSIGN(Source source, read_source(dir));
     sources.push_back(std::move(source));
   }
+  if (sources.empty())
+    return Failure{Fault::kUsage, "none of these folders has a run that began",
+                   options.dirs.front()};
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
   PROBE_TRY(check_same_meaning(sources, options.mixed_builds, summary.notes));
   AllChosen chosen;

@@ -1,22 +1,24 @@
 // A campaign as its test calls it.
 #pragma once
 
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
+#include <sys/wait.h>
+
+#include <cstdio>
 #include <string>
 #include <utility>
 
 namespace probe::test {
 
 // Whether it ended with 0, and what it said. `words` are of a shell.
-inline std::pair<bool, std::string> campaign(const std::string& name, const std::string& words) {
-  const std::string said = name + ".txt";
-  const int status = std::system((words + " >" + said + " 2>&1").c_str());
-  std::ifstream in(said);
-  std::stringstream text;
-  text << in.rdbuf();
-  return {status == 0, text.str()};
+inline std::pair<bool, std::string> campaign(const std::string& words) {
+  std::FILE* const pipe = popen((words + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return {false, "cannot be started"};
+  std::string said;
+  char block[4096];
+  while (const std::size_t size = std::fread(block, 1, sizeof block, pipe))
+    said.append(block, size);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) && WEXITSTATUS(status) == 0, said};
 }
 
 }  // namespace probe::test

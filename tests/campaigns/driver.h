@@ -55,6 +55,8 @@ inline Options read_options(const std::string& program, int argc, char** argv) {
     }
     if (i + 1 == argc) usage(program, word + " takes a number");
     const char* value = argv[++i];
+    if (std::string(value).find_first_not_of("0123456789") != std::string::npos || *value == '\0')
+      usage(program, word + " takes a number");
     if (word == "--for") {
       options.seconds = std::strtod(value, nullptr);
     } else if (word == "--count") {
@@ -125,6 +127,9 @@ inline int run(const Options& options, const Limits& limits,
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && tally.seed < tally.end && now() < until &&
+        why.empty())
+      why = "ended the program";
     if (WIFSIGNALED(status)) why = std::string("died of ") + strsignal(WTERMSIG(status));
     if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
       why = tally.found[0] != '\0' ? tally.found

@@ -6,10 +6,9 @@
 namespace {
 
 std::pair<bool, std::string> cut(const std::string& words) {
-  return probe::test::campaign("power_cut",
-                               "/usr/bin/python3 '" VLAPROBE_SOURCE_DIR
+  return probe::test::campaign("/usr/bin/python3 '" VLAPROBE_SOURCE_DIR
                                "/tests/campaigns/power_cut.py' --build '" VLAPROBE_BINARY_DIR "' " +
-                                   words);
+                               words);
 }
 
 }  // namespace

@@ -200,12 +200,11 @@ std::vector<Target> targets(const fs::path& work) {
                    const auto read = wire::from_json(bytes);
                    return read.ok() ? Status() : Status(read.failure());
                  }});
-  all.push_back({"openvla",
-                 {{"body", "[0.1,-0.2,0.3,0,0.5,-0.6,1]"}},
-                 [](const auto&, const auto& bytes) {
-                   const auto read = servers::openvla_actions(bytes);
-                   return read.ok() ? Status() : Status(read.failure());
-                 }});
+  all.push_back(
+      {"openvla", {{"body", "[0.1,-0.2,0.3,0,0.5,-0.6,1]"}}, [](const auto&, const auto& bytes) {
+         const auto read = servers::openvla_actions(bytes);
+         return read.ok() ? Status() : Status(read.failure());
+       }});
 
   const fs::path made = work / "run";
   make_run(made);
@@ -246,6 +245,23 @@ Sample damaged(const Target& target, std::uint64_t seed) {
   return out;
 }
 
+// By this process and those that it waited for, where files are parsed apart.
+struct Spent {
+  long most_kb = 0;
+  double seconds = 0;
+};
+Spent spent() {
+  Spent all;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    getrusage(who, &used);
+    all.most_kb = std::max(all.most_kb, used.ru_maxrss);
+    for (const timeval& time : {used.ru_utime, used.ru_stime})
+      all.seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return all;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -254,15 +270,19 @@ int main(int argc, char** argv) {
       fs::temp_directory_path() / ("vlaprobe_readers_" + std::to_string(getpid()));
   fs::create_directories(work);
   std::vector<Target> all = targets(work);
+  const auto leave = [&](const std::string& why) {
+    std::error_code error;
+    fs::remove_all(work, error);
+    campaign::usage(kName, why);
+  };
   std::erase_if(all, [&](const Target& target) {
     return !options.words.empty() &&
            std::ranges::find(options.words, target.name) == options.words.end();
   });
   for (const Target& target : all) {
-    if (target.samples.empty())
-      campaign::usage(kName, std::string(target.name) + " has no file to damage");
+    if (target.samples.empty()) leave(std::string(target.name) + " has no file to damage");
   }
-  if (all.empty()) campaign::usage(kName, "no such target");
+  if (all.empty()) leave("no such target");
   const int exit = campaign::run(
       options, {.seconds = 20, .memory = rlim_t{4} << 30},
       [&](campaign::Tally& tally) {
@@ -271,18 +291,17 @@ int main(int argc, char** argv) {
         const Sample file = damaged(target, tally.seed);
         const std::string path = (work / file.name).string();
         std::ofstream(path, std::ios::binary) << file.bytes;
-        rusage before{}, after{};
-        getrusage(RUSAGE_SELF, &before);
+        const auto before = spent();
         const Status status = target.read(path, file.bytes);
-        getrusage(RUSAGE_SELF, &after);
+        const auto after = spent();
         ++tally.counts[2 * which + (status.ok() ? 0 : 1)];
         if (!status.ok() &&
             (status.failure().message.empty() || status.failure().code == Fault::kInternal))
           tally.find(std::string(target.name) +
                      ": a refusal without a reason: " + to_text(status.failure()));
-        if (after.ru_maxrss - before.ru_maxrss > (1 << 20))  // kB
+        if (after.most_kb - before.most_kb > (1 << 20))
           tally.find(std::string(target.name) + ": took over a gigabyte");
-        if (after.ru_utime.tv_sec - before.ru_utime.tv_sec > 10)
+        if (after.seconds - before.seconds > 10)
           tally.find(std::string(target.name) + ": took over ten seconds");
       },
       [&](const campaign::Tally& tally) {

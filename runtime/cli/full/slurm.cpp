@@ -58,8 +58,11 @@ int tell(const Result<cluster::SlurmReport>& done, const cluster::ArrayOptions& 
     return kFine;
   }
   if (options.detach && !(done->job.empty() && done->merge_job.empty())) {
-    say("{} of {} {} are stored in {}; `vlaprobe results {} --follow` shows the shards grow\n",
-        done->stored, done->total, things, out, shell_word(out));
+    say("{} of {} {} are stored in {}; {} shows the shards grow\n", done->stored, done->total,
+        things, out,
+        std::string_view(things) == "episodes"
+            ? "`vlaprobe results " + shell_word(out) + " --follow`"
+            : "squeue and slurm/log there");
     return kFine;
   }
   for (const std::string& note : done->merged.notes) say("note: {}\n", note);

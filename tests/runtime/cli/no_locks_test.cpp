@@ -1,6 +1,8 @@
 // Verbs on a file system that gives no locks: nothing is written, and who reads is told what to do.
 #include <doctest/doctest.h>
 
+#include <cerrno>
+
 #include "tests/runtime/cli/program.h"
 
 using probe::test::contains;
@@ -25,6 +27,11 @@ TEST_CASE("where a file system gives no locks runs are neither written nor read,
     const Outcome read = box.vlaprobe(verb, none);
     CHECK_MESSAGE(read.exit != 0, verb, ": ", read.out, read.err);
     CHECK_MESSAGE(contains(read.err, "gives no locks (No locks available)"), verb, ": ", read.err);
+  }
+  for (const int error : {ENOSYS, ENOTSUP, EINVAL}) {
+    const Outcome read =
+        box.vlaprobe("results run", none + " PROBE_ERRNO=" + std::to_string(error));
+    CHECK_MESSAGE(contains(read.err, "its file system gives no locks ("), read.err);
   }
   CHECK(box.vlaprobe("results run").exit == 0);
 }

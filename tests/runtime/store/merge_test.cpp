@@ -142,6 +142,26 @@ TEST_CASE(
   CHECK(must_merge({{folder / "a", folder / "b"}, folder / "ab"}).rows == 2);
 }
 
+TEST_CASE(
+    "a shard that was cut off as it began is left out with a note, and all of them are no run") {
+  TemporaryFolder folder;
+  RunOptions options = options_for(folder / "begun");
+  options.policy = "null";
+  REQUIRE(run::run(table_plan(2, 3), options).ok());
+  const std::string empty = folder / "empty";
+  fs::create_directories(empty);
+  std::ofstream(empty + "/results.sqlite").flush();
+  const MergeSummary merged = must_merge({{empty, options.out}, folder / "all"});
+  CHECK(merged.added == 2);
+  CHECK(merged.notes ==
+        std::vector<std::string>{empty + " has no rows: its run was cut off as it began"});
+  const auto none = merge({{empty}, folder / "none"});
+  REQUIRE_FALSE(none.ok());
+  CHECK(none.failure().message == "none of these folders has a run that began");
+  const auto absent = merge({{options.out, folder / "absent"}, folder / "none"});
+  CHECK_FALSE(absent.ok());
+}
+
 TEST_CASE("a valid row wins over an invalid one wherever it stands, and damage counts as absent") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(2, 2);
