@@ -12,15 +12,20 @@ namespace {
 std::string place(std::span<const double> metres) {
   std::string text;
   for (const double value : metres)
-    text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", 100 * value);
+    text += fmt::format("{}{:.6g}", text.empty() ? "" : ", ", 100 * value + 0.0);  // no -0
   return "(" + text + ") cm";
 }
 
-// Quaternions are w x y z; most turns are about the vertical.
+// Quaternions are w x y z; most turns are about the vertical. q and -q are one turn.
 std::string turn(const std::array<double, 4>& q) {
-  if (std::abs(q[1]) > 1e-9 || std::abs(q[2]) > 1e-9)
-    return fmt::format("turned ({:.6g}, {:.6g}, {:.6g}, {:.6g})", q[0], q[1], q[2], q[3]);
-  return fmt::format("yaw {:.6g} deg", 360 / std::numbers::pi * std::atan2(q[3], q[0]));
+  if (std::abs(q[1]) > 1e-9 || std::abs(q[2]) > 1e-9) {
+    const double sign = q[0] < 0 ? -1 : 1;
+    return fmt::format("turned ({:.6g}, {:.6g}, {:.6g}, {:.6g})", sign * q[0] + 0.0,
+                       sign * q[1] + 0.0, sign * q[2] + 0.0, sign * q[3] + 0.0);
+  }
+  double yaw = std::remainder(360 / std::numbers::pi * std::atan2(q[3], q[0]), 360.0);
+  if (yaw < -180 + 1e-9) yaw += 360;
+  return fmt::format("yaw {:.6g} deg", yaw + 0.0);
 }
 
 std::string file(const plan::Plan& plan, std::uint32_t asset) {

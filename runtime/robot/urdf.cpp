@@ -16,6 +16,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/robot/model_check.h"
+#include "runtime/robot/urdf_limits.h"
 #include "runtime/robot/urdf_text.h"
 
 namespace probe::robot {

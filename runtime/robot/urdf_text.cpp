@@ -6,9 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <map>
 #include <string_view>
 
@@ -239,48 +236,6 @@ class Scanner {
 
 Result<UrdfText> scan_urdf(const std::string& text, const std::string& path) {
   return Scanner(text, path).scan();
-}
-
-namespace {
-
-bool is_infinite(const TiXmlElement& limit, const char* end) {
-  const char* const text = limit.Attribute(end);
-  return text != nullptr && std::isinf(std::strtod(text, nullptr)) &&
-         std::strpbrk(text, "iI") != nullptr;
-}
-
-}  // namespace
-
-Result<std::string> without_infinite_limits(const std::string& text, const std::string& path) {
-  TiXmlDocument document;
-  document.Parse(text.c_str(), nullptr, TIXML_ENCODING_UTF8);
-  TiXmlElement* const robot = document.RootElement();
-  if (robot == nullptr) return text;
-  bool is_changed = false;
-  for (TiXmlElement* e = robot->FirstChildElement("joint"); e; e = e->NextSiblingElement("joint")) {
-    TiXmlElement* const limit = e->FirstChildElement("limit");
-    if (limit == nullptr) continue;
-    const bool lower = is_infinite(*limit, "lower"), upper = is_infinite(*limit, "upper");
-    if (!lower && !upper) continue;
-    const std::string type = e->Attribute("type");
-    const bool moves = type == "revolute" || type == "prismatic";
-    if (moves && !(type == "revolute" && lower && upper)) {
-      return Failure{
-          Fault::kUrdf,
-          fmt::format("joint `{}` has a limit without end: of a joint that turns both may "
-                      "be, else it takes numbers",
-                      e->Attribute("name")),
-          fmt::format("{}:{}", path, limit->Row())};
-    }
-    if (moves) e->SetAttribute("type", "continuous");
-    limit->RemoveAttribute("lower");
-    limit->RemoveAttribute("upper");
-    is_changed = true;
-  }
-  if (!is_changed) return text;
-  TiXmlPrinter printer;
-  document.Accept(&printer);
-  return std::string(printer.CStr());
 }
 
 }  // namespace probe::robot

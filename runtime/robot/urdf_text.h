@@ -32,9 +32,4 @@ struct UrdfText {
 // `path` is only named in failures. The links form one tree afterwards.
 Result<UrdfText> scan_urdf(const std::string& text, const std::string& path);
 
-// The same text as urdfdom reads it, which knows no infinite limits, as wheels have them: a revolute
-// joint without either end is continuous, what does not move loses them. Others are refused by name
-// and line. After scan_urdf().
-Result<std::string> without_infinite_limits(const std::string& text, const std::string& path);
-
 }  // namespace probe::robot

@@ -24,7 +24,8 @@ struct SeenMesh {
 // plumb line meets first, at 13 x 13 places; where that is `fixture`, the place does not count.
 // Of the levels on which at least a tenth of the places agree within 5 mm, the one nearest to
 // `surface_z`, where the things lie, within half a metre: an area may be wider than its table, and
-// then most of it is over something else. Without `surface_z` the one of half the places that count.
+// then most of it is over something else. Without `surface_z` the one of half the places that
+// count.
 std::optional<double> table_height(const SeenMesh& backdrop, const SeenMesh& fixture,
                                    const std::array<double, 4>& area,
                                    std::optional<double> surface_z = std::nullopt);
@@ -44,8 +45,9 @@ struct Cover {
 };
 
 // `backdrop` with textures on its surface (level, at the table's height), its walls (upright, above
-// that) and its floor (level, the lowest of it, well below that or that itself). Where it has no table the surface
-// is what lies at `surface_z`. Fails (kRender), naming the part, where a texture covers nothing.
+// that) and its floor (level, the lowest of it: well below the surface, or that itself). Where it
+// has no table the surface is what lies at `surface_z`. Fails (kRender), naming the part, where a
+// texture covers nothing.
 Result<scene::Mesh> covered_backdrop(const scene::Mesh& backdrop, const SeenMesh& fixture,
                                      const std::array<double, 4>& area, double surface_z,
                                      std::span<const Cover> covers);

@@ -117,3 +117,15 @@ TEST_CASE("what a task changes of a scene in place is told, though the scene's n
   CHECK(shown["scene_here"]["base"] == "at (20, 5, 87) cm, yaw 180 deg");
   CHECK(describe_text(shown).find("base at (20, 5, 87) cm, yaw 180 deg") != std::string::npos);
 }
+
+TEST_CASE("a turn that is written otherwise is the same turn") {
+  const plan::Plan plan = test::compile_small(
+      "\nvariant round of base { scene { robot at (14.7cm, 2.8cm, 87cm) yaw -180deg; "
+      "surface 87cm area (-40cm, -30cm) .. (5cm, 30cm) } }\n"
+      "suite more { tasks { base, round }; seeds 1 }\n");
+  const auto index = [&](std::string_view name) { return plan.find_task(name).value(); };
+  const auto diff = diff_tasks(plan, index("base"), index("round"));
+  CHECK(diff["right"]["area"] == "(-40, -30) cm .. (5, 30) cm");
+  CHECK_FALSE(diff["right"].contains("base"));
+  CHECK_FALSE(diff["right"].contains("stands"));
+}

@@ -232,8 +232,22 @@ TEST_CASE("a wheel without ends is continuous, what is fixed loses them, half an
       two_links(revolute("<limit lower='-inf' upper='1' effort='1' velocity='1'/>")));
   const auto refused = load_urdf(half.path());
   REQUIRE(!refused.ok());
-  CHECK(refused.failure().message.starts_with("joint `waist` has a limit without end"));
+  CHECK(refused.failure().message ==
+        "joint `waist` goes from `-inf` to `1`: both are numbers, or `-inf` and `inf` of what "
+        "turns without end");
   CHECK(refused.failure().where == half.path() + ":4");
+  for (const char* ends :
+       {"lower='inf' upper='-inf'", "lower='inf' upper='inf'", "lower='-inf' upper='infinite'"}) {
+    CAPTURE(ends);
+    const std::string limit = std::string("<limit effort='1' velocity='1' ") + ends + "/>";
+    CHECK(load_message(two_links(revolute(limit))).starts_with("joint `waist` goes from `"));
+  }
+  const std::string slides =
+      "<joint name='waist' type='prismatic'><parent link='a'/>"
+      "<child link='b'/>" +
+      endless + "</joint>";
+  CHECK(load_message(two_links(slides)) ==
+        "joint `waist` goes from `-inf` to `inf`: of what slides both are numbers");
 }
 
 TEST_CASE("the released Google robot is read in each of its colourings") {
