@@ -17,10 +17,15 @@ std::optional<robot::RobotModel> described_by(Context& context, const Spelled& u
     if (remembered != nullptr) remembered->keep_described(path, stamp, *model);
     return std::move(model).value();
   }
-  Diagnostic& said = context
-                         .report(Situation::kUrdfUnreadable, urdf.span,
-                                 what + " cannot be read: " + model.failure().message)
-                         .note("looked for `" + urdf.text + "` in the assets folder");
+  const Failure& failure = model.failure();
+  // `where` is the path, or the path and a line of it.
+  const bool has_line = failure.where.starts_with(path + ":");
+  Diagnostic& said =
+      context
+          .report(Situation::kUrdfUnreadable, urdf.span,
+                  what + " cannot be read: " + failure.message)
+          .note(has_line ? "line " + failure.where.substr(path.size() + 1) + " of `" + path + "`"
+                         : "looked for `" + urdf.text + "` in the assets folder");
   const std::string advice = context.asset_root.advice(urdf.text);
   if (!advice.empty()) said.help(advice);
   return std::nullopt;

@@ -195,7 +195,8 @@ void apply_impulses(std::size_t index, Lanes lanes, Problem* problem) {
 template <typename Lanes>
 class LoadMatch {
  public:
-  // After the impulses of all that is not soft were applied.
+  // After the impulses of all contacts that are not soft were applied; those of limits and of
+  // joints' friction come later still.
   LoadMatch(Problem* problem, Lanes lanes) : problem_(problem), lanes_(lanes) {
     for (const ContactRows& c : problem->rows)
       if (is_soft(c)) {

@@ -83,6 +83,19 @@ TEST_CASE("a copy of a robot replaces what it says, joint by joint, and keeps th
   CHECK(slow.urdf.text == arm.urdf.text);
 }
 
+TEST_CASE("a description that cannot be read is told with the line that is wrong") {
+  const std::string root = probe::test::asset_root();
+  probe::test::write_text(std::filesystem::path(root) / "arm/torn.urdf",
+                          "<robot name='torn'>\n<link name='a'/>\n<link name='a'/>\n</robot>");
+  const auto torn = analyze_with_suite("robot odd like arm { urdf \"arm/torn.urdf\" }");
+  CHECK_MESSAGE(torn->said().find("two links are named `a`") != std::string::npos, torn->said());
+  CHECK_MESSAGE(torn->said().find("line 3 of `") != std::string::npos, torn->said());
+  const auto gone = analyze_with_suite("robot odd like arm { urdf \"arm/gone.urdf\" }");
+  CHECK_MESSAGE(gone->said().find("looked for `arm/gone.urdf` in the assets folder") !=
+                    std::string::npos,
+                gone->said());
+}
+
 TEST_CASE("a copy without fingers has no grip either, unless it says one") {
   // The joints of the hand move still.
   const auto bare = analyze_with_suite("robot odd like arm { fingers none }");
