@@ -53,6 +53,12 @@ bool is_set_first(const Surroundings& around, const Pose& from, std::span<const 
   return !is_free_along({&around, now}, from, way) && is_free_along({&around, then}, from, way);
 }
 
+bool are_set(double openness, double open, int decisions) {
+  constexpr double kNear = 0.03;  // of openness
+  constexpr int kLongest = 10;
+  return std::abs(openness - open) < kNear || decisions >= kLongest;
+}
+
 std::optional<std::vector<Pose>> free_way(const Surroundings& around, const Pose& from,
                                           const Pose& to, std::span<const Ball> balls) {
   const FreeLine line{&around, balls};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/expert/solids.h"
@@ -25,6 +26,9 @@ bool is_free_along(const FreeLine& line, const Pose& from, std::span<const Pose>
 // would come near something on this way. Those that slide never.
 bool is_set_first(const Surroundings& around, const Pose& from, std::span<const Pose> way,
                   const robot::HandShape& hand, double openness, double open);
+
+// Whether they are as open as they were told, or had the decisions that it takes them at most.
+bool are_set(double openness, double open, int decisions);
 
 // The corners of the shortest of these ways, the last is `to`. Nothing where all touch something.
 std::optional<std::vector<Pose>> free_way(const Surroundings& around, const Pose& from,

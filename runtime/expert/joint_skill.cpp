@@ -40,8 +40,6 @@ constexpr double kStands = 0.0015;               // m in a decision: less is sta
 constexpr double kSticks = 0.002;                // m of arc in a decision: less is no progress
 constexpr int kPatience = 5;                     // decisions without progress
 constexpr int kLongestMove = 60;
-constexpr double kSet = 0.03;    // of openness: fingers are set
-constexpr int kLongestSet = 10;  // decisions in which they are
 
 constexpr Pace kFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kNearHold{.shift = 0.035, .turn = 0.20};
@@ -217,23 +215,26 @@ bool JointSkill::plan(const policy::Privileged& view, const Arm& arm, const Reac
       if (!is_found) lack->add_out_of_reach(reach, arm.joints, at);
       continue;
     }
-    const bool comes_back = hold.pushes() || !reach.may_twist() || [&] {
-      Pose off = whole.back();
-      off.position -= kBefore * (off.rotation * Vec3::UnitX());
-      whole.push_back(off);
-      whole.push_back(ready_);
-      return reach.follow(arm.joints, whole).has_value();
-    }();
-    if (is_found && !comes_back) continue;
+    const bool is_best = hold.pushes() || comes_back(arm, reach, std::move(whole));
+    if (is_found && !is_best) continue;
     is_found = true;
     hold_ = hold;
     way_ = std::move(*way);
     sets_first_ = sets_first;
     least_ = hooks ? seen.joint->closed + kEdgeLeast * (far_of(*seen.joint) - seen.joint->closed)
                    : goal_.least;
-    if (comes_back) break;
+    if (is_best) break;
   }
   return is_found;
+}
+
+bool JointSkill::comes_back(const Arm& arm, const Reach& reach, std::vector<Pose> way) const {
+  if (!reach.may_twist()) return true;
+  Pose off = way.back();
+  off.position -= kBefore * (off.rotation * Vec3::UnitX());
+  way.push_back(off);
+  way.push_back(ready_);
+  return reach.follow(arm.joints, way).has_value();
 }
 
 // Off the part the way the hand came.
@@ -263,10 +264,6 @@ void JointSkill::way_home(const policy::Privileged& view, const Arm& arm, const 
   const std::vector<Ball> balls = hand_balls(hand, hand.gap_at(arm.openness)).all();
   const auto way = free_way(surroundings_of(view), arm.tcp, ready_, balls);
   way_ = way ? *way : std::vector<Pose>{ready_};
-}
-
-bool JointSkill::is_set(const Arm& arm) const {
-  return std::abs(arm.openness - hold_->open) < kSet;
 }
 
 void JointSkill::try_again(double position) {
@@ -308,7 +305,7 @@ void JointSkill::advance(const policy::Privileged& view, const Arm& arm, const R
       steps_ = 0;
       return ++next_ < way_.size() ? void() : enter(Phase::kPlan);
     case Phase::kSet:
-      if (is_set(arm) || steps_ >= kLongestSet) enter(Phase::kGo);
+      if (are_set(arm.openness, hold_->open, steps_)) enter(Phase::kGo);
       return;
     case Phase::kGo: {
       const bool is_last = next_ + 1 >= way_.size();

@@ -54,7 +54,8 @@ class JointSkill {
   policy::Action command(const policy::Privileged& view, const Arm& arm, Servo& servo,
                          const Reach& reach);
   void advance_move(double position);
-  bool is_set(const Arm& arm) const;
+  // Whether the arm comes from the end of a grip's way to where the tool began.
+  bool comes_back(const Arm& arm, const Reach& reach, std::vector<Pose> way) const;
   // Legs of the way back that are near the part.
   std::size_t near_legs() const { return hold_->pushes() ? 2 : 1; }
   void try_again(double position);

@@ -30,9 +30,9 @@ constexpr std::array kOut = {0.06, 0.10, 0.14};  // m along the surface, from un
 constexpr int kOutWays = 8;
 constexpr double kFromUnder = 0.25;  // m straight up that are free where it is out from under it
 constexpr std::size_t kPutMostHolds = 60;
-constexpr std::array<std::size_t, 2> kMostWays = {4,
-                                                  40};  // in; the latter where those lead nowhere
-constexpr int kPutTurns = 8;                            // of the source, where it comes from above
+// Ways in; the latter where the former lead nowhere.
+constexpr std::array<std::size_t, 2> kMostWays = {4, 40};
+constexpr int kPutTurns = 8;  // of the source, where it comes from above
 constexpr double kWidthCost = 10,
                  kLeverCost = 3;  // of a m between the fingers; of a m off the middle
 // Of hands whose fingers turn, whose arms do not come to all from straight above.

@@ -12,13 +12,11 @@ namespace {
 constexpr int kUnderMostTries = 3;
 constexpr double kHoldNear = 0.004, kPutNear = 0.008, kHomeNear = 0.03;  // m
 constexpr double kBeforeHold = 0.010, kBeforePut = 0.015;                // m
-constexpr double kSlipped = 0.025;    // m that the source may move in the hand
-constexpr double kOffPlace = 0.05;    // m, of what was put
-constexpr double kTouches = 0.0025;   // m over what it is put on
-constexpr int kLongestLower = 8;      // decisions
-constexpr double kDown = 0.006;       // m a decision, until it stands
-constexpr double kUnderSet = 0.03;    // of openness: fingers are set
-constexpr int kLongestUnderSet = 10;  // decisions in which they are
+constexpr double kSlipped = 0.025;   // m that the source may move in the hand
+constexpr double kOffPlace = 0.05;   // m, of what was put
+constexpr double kTouches = 0.0025;  // m over what it is put on
+constexpr int kLongestLower = 8;     // decisions
+constexpr double kDown = 0.006;      // m a decision, until it stands
 
 constexpr Pace kUnderFarPace{.shift = 0.070, .turn = 0.40, .gain = 0.035};
 constexpr Pace kUnderNearPace{.shift = 0.035, .turn = 0.20};
@@ -84,8 +82,7 @@ void PutUnder::begin_leave(const Scene& scene, const policy::Privileged& view, c
 void PutUnder::advance(const Scene& s, const policy::Privileged& view, const Reach& reach) {
   switch (phase_) {
     case Phase::kSet:
-      if (std::abs(s.openness - plan_->open) < kUnderSet || steps_ >= kLongestUnderSet)
-        enter(Phase::kGo);
+      if (are_set(s.openness, plan_->open, steps_)) enter(Phase::kGo);
       return;
     case Phase::kGo:
       switch (way_.advance(s.tcp)) {

@@ -1,6 +1,6 @@
-// The skill that a PutPlan is for: to the hold, close, carry along the way, let down, open, back
-// off, home; or to the hold, close, up, and it stays in the hand. A hold that is lost is planned
-// anew.
+// The skill that a PutPlan is for: fingers set, where need is, to the hold, close, carry along the
+// way, let down, open, back off, home; or to the hold, close, up, and it stays in the hand. A hold
+// that is lost is planned anew.
 #pragma once
 
 #include <optional>

@@ -4,6 +4,7 @@
 # FOLDER; called again it continues them.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
+source "$here/families.sh"
 vlaprobe=${VLAPROBE:-$here/../../build/vlaprobe}
 folder=${1:-$here/../../build/google_floors}
 [ $# -gt 0 ] && shift
@@ -17,12 +18,11 @@ printf '# plan %s\nfamily,policy,trials,attempted,success\n' "$root" >"$table"
 for policy in $policies; do
   # One seed: the starts are the same for all, and only `random` draws.
   "$vlaprobe" run "$here/one_colouring.probe" --suite $suite --policy "$policy" --seeds 0 --jobs "$(nproc)" -o "$folder/$policy"
-  "$vlaprobe" results "$folder/$policy" --csv | awk -F, -v policy="$policy" '
+  "$vlaprobe" results "$folder/$policy" --csv | awk -F, -v policy="$policy" "$family"'
     NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
-    { family = $1 ~ /^pick_horizontal/ ? "can horizontal" : $1 ~ /^pick_vertical/ ? "can vertical" : $1 ~ /^pick_standing/ ? "can standing" \
-        : $1 ~ /_near_/ ? "move near" : $1 ~ /^open_/ ? "open" : $1 ~ /^close_/ ? "close" : "apple"
-      if (!(family in trials)) order[++families] = family
-      ++trials[family]; attempted[family] += $column["invalid"] == ""; success[family] += $column["success"] == "true" }
+    { f = family($1)
+      if (!(f in trials)) order[++families] = f
+      ++trials[f]; attempted[f] += $column["invalid"] == ""; success[f] += $column["success"] == "true" }
     END { for (i = 1; i <= families; ++i) { f = order[i]
       printf "%s,%s,%d,%d,%d\n", f, policy, trials[f], attempted[f], success[f] } }' >>"$table"
 done
