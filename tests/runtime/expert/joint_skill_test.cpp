@@ -133,6 +133,10 @@ TEST_CASE("fingers that turn are set before the hand goes where they would meet 
   CHECK_FALSE(is_set_first(around, from, std::array{past}, hand, 0, 0));
   CHECK_FALSE(is_set_first(around, from, std::array{past}, hand, 0, 1));  // set, too, they do
   CHECK(hand.widest() == doctest::Approx(0.5));
+  // Near enough is set, and what does not come there is not waited for.
+  CHECK(are_set(0.52, 0.5, 0));
+  CHECK_FALSE(are_set(0.6, 0.5, 9));
+  CHECK(are_set(0.6, 0.5, 10));
 }
 
 }  // namespace probe::expert
