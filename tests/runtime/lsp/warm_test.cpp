@@ -252,3 +252,31 @@ TEST_CASE("a table of starts is remembered by what it says, whatever its name") 
   CHECK(far == cold);
   CHECK(moved("-0.16") != far);
 }
+
+TEST_CASE("a table of starts that changes on disk is read again when the editor tells of it") {
+  const auto folder = std::filesystem::temp_directory_path() / ("vlaprobe_table_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string path = folder / "own.probe", table = folder / "starts.csv";
+  const auto write = [&](const std::string& x) {
+    std::ofstream(table) << "start,object,x_m,y_m,z_m,qw,qx,qy,qz\n0,source,-0.16,0.075,0.9,1,0,0,0\n0,target,"
+                         << x << ",-0.075,0.9,1,0,0,0\n";
+  };
+  write("-0.16");
+  Editor editor(folder, std::chrono::hours(1), Json::object(), AssetRoot(VLAPROBE_SOURCE_DIR "/assets"));
+  editor.open(path, "use \"" + kSuite + "/intact.probe\"\n"
+                    "layout recorded { starts \"starts.csv\"; drop 1cm settle 0.5s }\n"
+                    "variant v of carrot_on_plate { layout recorded }\n"
+                    "suite s trained on bridge_v2 { tasks { v }; seeds 42 }\n");
+  CHECK(told(editor).empty());
+  const auto tell = [&](const std::string& changed) {
+    editor.tell("workspace/didChangeWatchedFiles",
+                {{"changes", Json::array({Json{{"uri", lsp::uri_of(changed)}, {"type", 2}}})}});
+    return told(editor);
+  };
+  write("9");
+  CHECK(tell(folder / "other.csv").empty());
+  const auto far = tell(table);
+  REQUIRE(far.contains(lsp::uri_of(path)));
+  CHECK(far.at(lsp::uri_of(path)).find("stands over the edge") != std::string::npos);
+  std::filesystem::remove_all(folder);
+}
