@@ -232,9 +232,10 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
       if (holds) return true;
     }
   }
-  for (const plan::EpisodeRecord& episode : plan.episodes(plan.tasks()[task])) {
+  const auto starts = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
+  for (std::uint32_t start = 0; start < starts; ++start) {
     for (const vm::Lies lies : {vm::Lies::kOn, vm::Lies::kIn}) {
-      auto begun = vm::make_up_start(plan, task, episode, lies);
+      auto begun = vm::make_up_start(plan, task, start, lies);
       if (!begun) break;
       // What an episode would be invalid for is no way to begin: on a plate is not in it.
       PROBE_ASSIGN(const auto claims, vm::judge_claims(plan, task, begun->starts, begun->sample));

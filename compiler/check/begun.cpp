@@ -1,6 +1,6 @@
 // P0607: success that is true before anything has moved, in starts of a task, what is asked "was it
-// ever so" and is so in all of them, and what brings a later sentence and is so in some. A policy
-// that does nothing has them. What is not known before things settle, as whether one lies on
+// ever so" and is so in all of them, and what brings the second sentence and is so in some. A
+// policy that does nothing has them. What is not known before things settle, as whether one lies on
 // another, says nothing here.
 #include <algorithm>
 #include <map>
@@ -47,31 +47,32 @@ class BegunChecker {
   }
 
  private:
-  // As far as joints say, which begin elsewhere in starts of a table alone. Where it is so in all
+  // Of the sentence that comes first, as far as joints say, which begin elsewhere in starts of a
+  // table alone: what brings another is waited for when joints have moved. Where it is so in all
   // starts the lowered program is told of, by P0602.
   void check_later(const Task& task) {
-    if (model_.layouts[task.layout].given_joints.empty()) return;
+    if (task.later.empty() || model_.layouts[task.layout].given_joints.empty()) return;
+    const Metric& when = task.later.front().when;
     const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
     const CameraId camera = views_of(model_, task).front().camera;
     const Frame frame = frame_of(model_, model_.scenes[task.scene], model_.cameras[camera]);
-    for (const LaterSentence& later : task.later) {
-      Diagnostics unsaid;
-      const auto program = lower::lower_metrics(model_, {&later.when, 1}, bodies, frame, unsaid);
-      if (!program) continue;
-      std::vector<std::size_t> begun;
-      for (std::size_t i = 0; i < task.starts.size(); ++i) {
-        lower::AtRest rest{{}, {}, [](auto, auto) { return std::optional<bool>(); }};
-        rest.joints = joints_at(task, task.starts[i]);
-        if (lower::holds_at_rest(*program, 0, rest) == true) begun.push_back(i);
-      }
-      if (begun.empty() || begun.size() == task.starts.size()) continue;
-      const About about(reporter_, task.decl_span);
-      report_of(reporter_, Code::P0607, task, task.place(later.when.span),
-                "what brings the next sentence of `" + task.name +
-                    "` holds before anything moves in " + in_words(begun, task.starts.size()))
-          .point("the sentence before it is said in one step alone there")
-          .help("begin otherwise in these starts, or ask for them in a task of their own");
+    Diagnostics unsaid;
+    const auto program = lower::lower_metrics(model_, {&when, 1}, bodies, frame, unsaid);
+    if (!program) return;
+    std::vector<std::size_t> begun;
+    for (std::size_t i = 0; i < task.starts.size(); ++i) {
+      lower::AtRest rest{{}, {}, [](auto, auto) { return std::optional<bool>(); }};
+      rest.joints = joints_at(task, task.starts[i]);
+      if (lower::holds_at_rest(*program, 0, rest) == true) begun.push_back(i);
     }
+    if (begun.empty() || begun.size() == task.starts.size()) return;
+    if (!said_.insert({when.span, task.starts.data()}).second) return;
+    const About about(reporter_, task.decl_span);
+    report_of(reporter_, Code::P0607, task, task.place(when.span),
+              "what brings the next sentence of `" + task.name +
+                  "` holds before anything moves in " + in_words(begun, task.starts.size()))
+        .point("the sentence before it is said in one step alone there")
+        .help("begin otherwise in these starts, or ask for them in a task of their own");
   }
 
   std::vector<lower::Interval> joints_at(const Task& task, const Start& start) const {

@@ -173,7 +173,9 @@ std::string unsaid_in(const Model& model, const Task& task, const Phrase& phrase
                            : count == 2 ? " and one other do"
                                         : " and " + std::to_string(count - 1) + " others do");
   return who + " not say what `" + phrase.means_text +
-         "` asks for and may be meant, too: say it of them, or ask for a fact";
+         "` asks for and may be meant, too: state it there, or ask for a fact, which is false "
+         "where it "
+         "is not stated";
 }
 
 std::optional<std::vector<std::uint16_t>> related_bodies(const Model& model, const Scenery& scenery,

@@ -170,9 +170,12 @@ void Emitter::add_later(const sema::Task& task, const std::vector<lower::Body>& 
     const auto program =
         add_program(task, {&later.when, 1}, bodies, task.horizon > 1 ? task.horizon - 1 : 1);
     if (!program) return;  // reported
-    if (holds_where_it_begins(task, programs_[*program])) {
-      diagnostics_.report(Code::P0602, task.place(later.when.span),
-                          "what brings the next sentence holds where `" + task.name + "` begins")
+    // What brings another than the second sentence is waited for when joints have moved.
+    const bool is_first = &later == &task.later.front();
+    if (is_first && holds_where_it_begins(task, programs_[*program])) {
+      diagnostics_
+          .report(Code::P0602, task.place(later.when.span),
+                  "what brings the next sentence holds where `" + task.name + "` begins")
           .point("the sentence before it is said in one step alone");
     }
     records().later.push_back({index, *program, writer_.text(later.text), {}});

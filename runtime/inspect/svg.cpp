@@ -165,7 +165,8 @@ class Page {
     put("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
         "viewBox=\"0 0 {0} {1}\" font-family=\"Helvetica, Arial, sans-serif\"",
         px(width_), px(height_));
-    // For programs that show it: the plot, and x px = zero x + scale * x m, y px = zero y - scale * y m.
+    // For programs that show it: the plot, and x px = zero x + scale * x m, y px = zero y - scale *
+    // y m.
     put(" data-plot=\"{} {} {} {}\" data-scale=\"{}\" data-zero=\"{} {}\">\n", px(kLeft),
         px(plot_top_), px(plot_width_), px(plot_height_), scale_, x(0), y(0));
     put("<title>{}</title>\n", xml_text(view_.prompt));
@@ -216,7 +217,8 @@ class Page {
     }
   }
 
-  // Solid where they begin, dashed where their joint ends.
+  // Solid where they begin in the first start, dashed where their joint ends, faint where others
+  // begin.
   void parts() {
     for (const TopPart& part : view_.parts) {
       put("<g stroke=\"{0}\"><title>{1}{2}</title>\n", kFixture, xml_text(part.name),
@@ -241,9 +243,10 @@ class Page {
 
   void regions() {
     for (const TopRegion& region : view_.regions) {
-      put("<g><title>{}</title><polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.06\" "
+      put("<g><title>{}{}</title><polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.06\" "
           "stroke=\"{}\" stroke-dasharray=\"1 3\" stroke-width=\"2\"/></g>\n",
-          xml_text(region.name), points(region.outline), kRegion, kRegion);
+          xml_text(region.name), region.starts.empty() ? "" : ": starts " + ranges(region.starts),
+          points(region.outline), kRegion, kRegion);
     }
   }
 
@@ -414,9 +417,11 @@ class Page {
       stroke("h24", " stroke-width=\"1.5\"", kFixture);
       say("fixtures: where their joints start; dashed, where they end");
     }
-    for (const TopRegion& region : view_.regions) {
+    for (std::size_t i = 0; i < view_.regions.size(); ++i) {
+      // Once, wherever starts have it.
+      if (i > 0 && view_.regions[i].name == view_.regions[i - 1].name) continue;
       stroke("h24", " stroke-width=\"2\" stroke-dasharray=\"1 3\"", kRegion);
-      say("region " + region.name);
+      say("region " + view_.regions[i].name);
     }
     for (const TopCamera& camera : view_.cameras) {
       if (camera.image.empty()) continue;

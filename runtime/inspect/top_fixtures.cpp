@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -123,11 +124,32 @@ void add_others(const PosedFixture& posed, std::size_t link,
   if (seen->others.empty()) seen->starts.clear();
 }
 
-// How one fixture stands, its joints as they begin; `frames` gets those of its parts in the first
-// start, by their number.
+struct BegunFrame {
+  Pose at;
+  std::vector<std::uint32_t> starts;
+};
+using BegunFrames = std::map<std::uint32_t, std::vector<BegunFrame>>;  // by a part's number
+
+// A region wherever starts have it; starts in which it lies alike are one.
+void add_region(std::string_view name, const scene::Solid& box, std::span<const BegunFrame> frames,
+                std::vector<TopRegion>* regions) {
+  std::vector<TopRegion> seen;
+  for (const BegunFrame& frame : frames) {
+    std::vector<Point> outline = shadow(moved(box, frame.at));
+    auto known = std::ranges::find(seen, outline, &TopRegion::outline);
+    if (known == seen.end())
+      known = seen.insert(known, {std::string(name), std::move(outline), {}});
+    known->starts.insert(known->starts.end(), frame.starts.begin(), frame.starts.end());
+  }
+  for (TopRegion& region : seen) std::ranges::sort(region.starts);
+  if (seen.size() == 1) seen.front().starts.clear();
+  std::ranges::move(seen, std::back_inserter(*regions));
+}
+
+// How one fixture stands, its joints as they begin; `frames` gets those of its parts.
 Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
                    std::span<const BegunJoints> all, const AssetRoot& asset_root,
-                   std::map<std::uint32_t, Pose>* frames, TopView* view) {
+                   BegunFrames* frames, TopView* view) {
   const std::vector<double>& starts = all.front().joints;
   PROBE_ASSIGN(const PosedFixture posed, PosedFixture::create(plan, record, asset_root));
   const std::string folder = std::filesystem::path(posed.model().path).parent_path().string();
@@ -144,7 +166,8 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
                      posed.model().path};
     }
     const auto link = static_cast<std::size_t>(found);
-    frames->emplace(record.parts.first + static_cast<std::uint32_t>(i), begun[link]);
+    auto& stands = (*frames)[record.parts.first + static_cast<std::uint32_t>(i)];
+    for (const BegunJoints& one : all) stands.push_back({posed.at(one.joints)[link], one.starts});
     TopPart& seen = view->parts.emplace_back();
     seen.name = plan.text(part.name);
     const auto solids = scene::link_solids(posed.model().links[link], folder);
@@ -164,7 +187,7 @@ Status add_fixture(const plan::Plan& plan, const plan::FixtureRecord& record,
 Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
                     const AssetRoot& asset_root, TopView* view) {
   const plan::SceneRecord& scene = plan.scenes()[task.scene];
-  std::map<std::uint32_t, Pose> frames;
+  BegunFrames frames;
   std::size_t first = 0;
   for (const std::uint32_t number : plan.fixtures(scene)) {
     const plan::FixtureRecord& record = plan.fixtures()[number];
@@ -175,27 +198,27 @@ Status add_fixtures(const plan::Plan& plan, const plan::TaskRecord& task,
   }
   for (std::uint32_t number = 0; number < plan.regions().size(); ++number) {
     const plan::RegionRecord& region = plan.regions()[number];
-    Pose frame;
+    std::vector<BegunFrame> stands(1);
     switch (static_cast<plan::BodyKind>(region.kind)) {
       case plan::BodyKind::kSurface:
         if (region.index != task.scene) continue;
-        frame.position = {0, 0, scene.surface_z};
+        stands[0].at.position = {0, 0, scene.surface_z};
         break;
       case plan::BodyKind::kFixture:
         if (region.index != task.scene) continue;
-        frame.position = Vec3(scene.fixture_position.data());
+        stands[0].at.position = Vec3(scene.fixture_position.data());
         break;
       case plan::BodyKind::kPart: {
         const auto found = frames.find(region.index);
         if (found == frames.end()) continue;
-        frame = found->second;
+        stands = found->second;
         break;
       }
       default:
         continue;
     }
-    view->regions.push_back({std::string(plan.text(region.name)),
-                             shadow(moved(solid_of(plan::box_of(plan.tables(), number)), frame))});
+    add_region(plan.text(region.name), solid_of(plan::box_of(plan.tables(), number)), stands,
+               &view->regions);
   }
   return {};
 }

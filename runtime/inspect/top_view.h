@@ -56,8 +56,9 @@ struct TopPart {
   std::vector<Begun> others;  // as other starts begin
 };
 struct TopRegion {
-  std::string name;  // "cabinet.inside_top"
-  std::vector<Point> outline;  // as the first episode begins
+  std::string name;  // "cabinet.inside_top"; one of these for each place where starts have it
+  std::vector<Point> outline;
+  std::vector<std::uint32_t> starts;  // that have it there; empty: all
 };
 
 struct TopView {

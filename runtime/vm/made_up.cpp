@@ -160,12 +160,12 @@ std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t
 }
 
 std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,
-                                         const plan::EpisodeRecord& episode, Lies lies) {
+                                         std::uint32_t start, Lies lies) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const auto bodies = plan.bodies(record);
-  const auto placements = plan.placements(episode);
+  const auto placements = plan.placements(plan.episodes(record)[start]);
   const double table = plan.scenes()[record.scene].surface_z;
-  MadeUpWorld world = make_up_world(plan, task);
+  MadeUpWorld world = make_up_world(plan, task, start);
   std::vector<PlacedObject> placed;
   for (std::size_t i = 0; i < bodies.size() && i < placements.size(); ++i) {
     if (static_cast<plan::BodyKind>(bodies[i].kind) != plan::BodyKind::kObject) continue;

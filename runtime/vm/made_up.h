@@ -58,12 +58,11 @@ std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t
 // or just above the other's lower side, as in a hollow thing.
 enum class Lies : std::uint8_t { kOn, kIn };
 
-// The task's objects where the episode places them, at rest: on one another where the layout puts
-// them so, the others on the surface; everything presses what carries it. None when no object is
-// put on another. Fixtures and their parts are as in make_up_world, so nothing is in a region of
-// theirs.
+// The task's objects where a start places them, at rest: on one another where the layout puts them
+// so, the others on the surface; everything presses what carries it. None when no object is put on
+// another. Fixtures and their parts are as in make_up_world, so nothing is in a region of theirs.
 std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,
-                                         const plan::EpisodeRecord& episode, Lies lies);
+                                         std::uint32_t start, Lies lies);
 
 // What a condition among the task's metrics says when the world has stayed as it is for 8 control
 // steps, more than any rule counts.

@@ -1,4 +1,5 @@
-// Instructions that change in the course of an episode. Each case begins with the productions it holds.
+// Instructions that change in the course of an episode. Each case begins with the productions it
+// holds.
 #include <doctest/doctest.h>
 
 #include "runtime/plan/ids.h"
@@ -77,10 +78,11 @@ variant blue_in of put_in { source blue }
 }
 
 TEST_CASE("task_st: what a later sentence says in other words is a paraphrase") {
-  const auto a = clean(kRoom +
-                       "variant reworded of put_in {\n"
-                       "  then say \"put {the source} down into it\" when is_open(chest.drawer) or step >= 101\n"
-                       "}\n");
+  const auto a = clean(
+      kRoom +
+      "variant reworded of put_in {\n"
+      "  then say \"put {the source} down into it\" when is_open(chest.drawer) or step >= 101\n"
+      "}\n");
   CHECK(axes_text(*a, "reworded") == "language.paraphrase");
 }
 
@@ -88,7 +90,8 @@ TEST_CASE("later sentences are held to scene and success as the first is") {
   const auto said = [](const std::string& then) {
     return analyze_with_suite(kRoom + "task t like put_in { " + then + " }\n")->said();
   };
-  CHECK(said("then say \"put {the tray} into it\" when step >= 9").find("P0404") != std::string::npos);
+  CHECK(said("then say \"put {the tray} into it\" when step >= 9").find("P0404") !=
+        std::string::npos);
   CHECK(said("then say \"\" when step >= 9").find("P0406") != std::string::npos);
   CHECK(said("then say \"open {the chest.drawer}\" when step >= 9").find("twice in turn") !=
         std::string::npos);
@@ -118,6 +121,14 @@ TEST_CASE("a condition that cannot hold in time, or always does, is said where i
   // Where the drawer begins 10 of its 20 cm open there is nothing to wait for.
   CHECK(failed_build(kRoom + "task t like put_in { start chest.slide 10cm }\n")
             .find("holds where `t` begins") != std::string::npos);
+  // What brings the third sentence is waited for when the drawer has been closed.
+  CHECK(failed_build(kRoom + R"(
+task t like put_in {
+  start chest.slide 10cm; say "close {the chest.drawer}"
+  then say "open {the chest.drawer}" when travel(chest.drawer) < 0.1 * range(chest.drawer)
+  then say "put {the source} into it" when is_open(chest.drawer)
+}
+)") == "");
 }
 
 TEST_CASE("words that were proved to mean one thing are proved in later sentences, too") {

@@ -22,6 +22,7 @@
 
 #include <fmt/format.h>
 
+#include "compiler/diag/text.h"
 #include "runtime/base/result.h"
 #include "runtime/compile/files.h"
 #include "runtime/plan/plan.h"
@@ -181,7 +182,8 @@ class Campaign {
       PROBE_ASSIGN(Compilation made, compile::compile_files({file}, {.assets = options_.assets,
                                                                      .suite = options_.suite,
                                                                      .tasks = options_.tasks}));
-      if (!made.ok) return usage(file + " has errors: `vlaprobe check` says which");
+      if (!made.ok)
+        return usage(file + " has errors:\n" + render_text(made.diagnostics, made.sources));
       PROBE_ASSIGN(plan::Plan plan, plan::Plan::from_bytes(std::move(made.plan)));
       plans_.push_back(std::move(plan));
     }

@@ -57,14 +57,15 @@ const Audited& published() {
   return audited;
 }
 
-// A text behind the suite, in a folder of its own.
-Audited audit_text(const std::string& text) {
+// A text behind the suite, in a folder of its own; `table` is starts.csv beside it.
+Audited audit_text(const std::string& text, const std::string& table = "") {
   const fs::path folder = fs::temp_directory_path() / ("probe_audit_" + std::to_string(getpid()));
   fs::create_directories(folder);
   for (const auto& entry : fs::directory_iterator(VLAPROBE_SOURCE_DIR "/suite"))
     if (entry.is_regular_file())
       fs::copy_file(entry.path(), folder / entry.path().filename(),
                     fs::copy_options::overwrite_existing);
+  if (!table.empty()) std::ofstream(folder / "starts.csv") << table;
   std::ofstream(folder / "own.probe") << "use \"intact_clean.probe\"\n" << text;
   Audited audited = audit_file((folder / "own.probe").string());
   fs::remove_all(folder);
@@ -326,6 +327,26 @@ TEST_CASE("a thing that is to be put on another and begins there is found") {
   }
 }
 
+TEST_CASE("a thing that begins on another while a drawer is shut, in one start alone, is found") {
+  const std::string start_1 = "1,carrot,-0.2,0.1,0.926,\n1,plate,-0.2,0.1,0.903,\n";
+  const auto holds = [&](const char* top_0, const char* top_1) {
+    const Audited own = audit_text(
+        "use \"kitchen.probe\"\n"
+        "layout given { starts \"starts.csv\"; drop 1cm settle 0.5s }\n"
+        "metrics laid { success = at end (on_top_of(source, target) and "
+        "closed(cabinet.top_drawer)) }\n"
+        "task lay like store { source carrot; target plate; layout given; metrics laid\n"
+        "  say \"put {the source} on {the target} and close the top drawer\"; solution none }\n"
+        "suite own { tasks { lay }; seeds 0 }\n",
+        std::string("start,object,x_m,y_m,z_m,value\n"
+                    "0,carrot,-0.2,0.1,0.92,\n0,plate,-0.2,-0.1,0.903,\n0,cabinet.top,,,,") +
+            top_0 + "\n" + start_1 + "1,cabinet.top,,,," + top_1 + "\n");
+    return own.find(Kind::kHoldsAtStart, "lay") != nullptr;
+  };
+  CHECK(holds("0.13", "0"));
+  CHECK(!holds("0", "0.13"));
+}
+
 TEST_CASE("what is to lie between two things may lie beside one of them") {
   const Audited own = audit_text(
       "use \"std/space.probe\"\nrole helper\n"
@@ -496,7 +517,8 @@ layout two_and_a_plate {
   orient by rest
   drop 50cm settle 0.5s
 }
-metrics asked { success = at end )" + goal + R"( }
+metrics asked { success = at end )" +
+                                   goal + R"( }
 task two like on_table {
   source carrot; helper green_cube; target plate; layout two_and_a_plate; metrics asked
   say "first put {the source} on {the target}, then {the helper}"
