@@ -181,7 +181,7 @@ class TextServer final : public Server {
       if (workspace_.documents.close(path)) touch(path);
     } else if (method == "workspace/didChangeWatchedFiles") {
       const Json* changes = find(params, {"changes"});
-      if (changes == nullptr) return touch("");
+      if (changes == nullptr || changes->size() == 0) return touch("");
       for (const Json& change : *changes) {
         // A table is of the programs that read it; a text that is new may be what one lacks.
         const std::string changed = path_of(read_text(change, {"uri"}));
