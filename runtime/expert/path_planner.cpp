@@ -33,11 +33,6 @@ constexpr double kLowCorner = 0.55;  // of low ways, whose corners are near to o
 constexpr int kFewestSteps = 5, kMostSteps = 24;
 constexpr int kMoreSteps = 3;   // added where the clearance was not met
 constexpr double kBad = 0.003;  // m less than nothing
-// Of two paths that lack as much, as the goal itself lacks it, the slower one is taken that costs
-// so much less: who winds in few steps moves farther in each than the arm follows, and cuts
-// corners.
-constexpr double kAsBad = 0.0005;  // m
-constexpr double kEasier = 0.8;
 
 struct Move {
   const Reach* reach = nullptr;
@@ -162,9 +157,7 @@ PlannedPath shaped(const Move& move) {
   PlannedPath best = shaped(move, steps);
   if (best.clearance >= -kBad) return best;
   PlannedPath slower = shaped(move, steps + kMoreSteps);
-  const bool is_easier =
-      slower.clearance > best.clearance - kAsBad && slower.fit.cost < kEasier * best.fit.cost;
-  return slower.clearance > best.clearance || is_easier ? slower : best;
+  return slower.clearance > best.clearance ? slower : best;
 }
 
 Ball ball(double x, double y, double z, double radius) { return {{x, y, z}, radius}; }

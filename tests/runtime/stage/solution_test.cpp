@@ -253,10 +253,6 @@ suite all { tasks { lay, shut }; seeds 0 }
   CHECK(solves(plan, "shut", 1));
 }
 
-TEST_CASE("a thing is carried over the front of an open drawer, not against it") {
-  CHECK(solves(the_kitchen(), "carrot_away", 2));
-}
-
 TEST_CASE("regions of two drawers are two places, though their boxes are one in their own frames") {
   const plan::Plan plan = kitchen_of(R"(
 fixture pair {
