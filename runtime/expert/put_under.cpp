@@ -14,7 +14,6 @@ constexpr double kHoldNear = 0.004, kPutNear = 0.008, kHomeNear = 0.03;  // m
 constexpr double kBeforeHold = 0.010, kBeforePut = 0.015;                // m
 constexpr double kSlipped = 0.025;   // m that the source may move in the hand
 constexpr double kOffPlace = 0.05;   // m, of what was put
-constexpr double kTouches = 0.0025;  // m over what it is put on
 constexpr int kLongestLower = 8;     // decisions
 constexpr double kDown = 0.006;      // m a decision, until it stands
 
