@@ -26,4 +26,5 @@ for policy in $policies; do
     END { for (i = 1; i <= families; ++i) { f = order[i]
       printf "%s,%s,%d,%d,%d\n", f, policy, trials[f], attempted[f], success[f] } }' >>"$table"
 done
-mv "$table" "$here/floors.csv"
+# A table of some policies takes nobody's place.
+if [ "$policies" = "expert null random reach wrong" ]; then mv "$table" "$here/floors.csv"; else echo "$table"; fi

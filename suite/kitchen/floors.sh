@@ -24,4 +24,5 @@ for policy in $policies; do
     END { for (i = 1; i <= tasks; ++i) { t = order[i]
       printf "%s,%s,%d,%d,%d,%d,%d\n", t, policy, episodes[t], attempted[t], intention[t], success[t], disturbed[t] } }' >>"$table"
 done
-mv "$table" "$here/floors.csv"
+# A table of some policies takes nobody's place.
+if [ "$policies" = "expert null random reach wrong" ]; then mv "$table" "$here/floors.csv"; else echo "$table"; fi
