@@ -1,33 +1,17 @@
 // A program of Node's that looks at a page in Chromium, and what it said.
 #pragma once
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "tests/shell_program.h"
 
 namespace probe::test {
 
-struct NodeOutcome {
-  int status = -1;  // 0: all is as it should be
-  std::string words;
-};
-
 // `arguments` as a shell reads them; ended after `seconds`.
-inline NodeOutcome run_node(const std::string& program, const std::string& arguments,
-                            int seconds = 180) {
-  const std::string command = "timeout " + std::to_string(seconds) + " node '" +
-                              VLAPROBE_SOURCE_DIR "/" + program + "' " + arguments + " 2>&1";
-  NodeOutcome outcome;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return outcome;
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    outcome.words.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
+inline ShellOutcome run_node(const std::string& program, const std::string& arguments,
+                             int seconds = 180) {
+  return run_shell("timeout " + std::to_string(seconds) + " node '" + VLAPROBE_SOURCE_DIR "/" +
+                   program + "' " + arguments);
 }
 
 // Whether the sources of a page have the types that they claim; else what is wrong.

@@ -234,9 +234,8 @@ Result<std::string> to_text(const JobScript& script) {
     if (script.whole_nodes) text += "#SBATCH --ntasks-per-node=1\n";
   } else {
     text += "#SBATCH --array=1-" + tasks + "\n";
-    text += kHead;
+    text += kHead + time;
   }
-  text += script.server_apart ? "" : time;
   text += "#SBATCH --cpus-per-task=" + std::to_string(script.worlds) + "\n";
   if (script.whole_nodes) text += "#SBATCH --exclusive\n";
   PROBE_TRY(add_options(text, script.sbatch, "--sbatch"));

@@ -127,6 +127,14 @@ Result<std::string> submit(const fs::path& script, const std::string& after = ""
   return job;
 }
 
+// The same of what lies in `folder`; its number is kept there under `name`, for later calls.
+Result<std::string> submit_there(const fs::path& folder, const char* script, const char* name,
+                                 const std::string& after = "") {
+  PROBE_ASSIGN(std::string job, submit(folder / script, after));
+  PROBE_TRY(write_file((folder / name).string(), std::as_bytes(std::span(job))));
+  return job;
+}
+
 // The job of an earlier call that has not ended; empty: none.
 Result<std::string> job_under_way(const fs::path& file) {
   if (!is_there(file.string())) return std::string();
@@ -197,22 +205,16 @@ Result<SlurmReport> detach(const ArrayWork& work, const ArrayOptions& options,
     return report;
   }
   // What shards have that were not joined yet.
-  std::erase_if(lacking, [&](auto& entry) {
-    auto& [shard, count] = entry;
-    const std::string dir = out + "/" + shard_folder(shard, options.script.tasks);
-    const auto begun = work.is_begun(dir);
-    if (!begun || !*begun) return false;
+  std::erase_if(lacking, [&](const auto& shard) {
+    const std::string dir = out + "/" + shard_folder(shard.first, options.script.tasks);
     const auto left = work.missing(dir, options.script.tasks);
-    if (!left) return false;
-    const auto own = left->find(shard);
-    return own == left->end();
+    return left.ok() && !left->contains(shard.first);
   });
   if (report.job.empty() && !lacking.empty()) {
-    PROBE_ASSIGN(report.job, submit(report.script));
-    PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
+    PROBE_ASSIGN(report.job, submit_there(folder, "job.sh", "job"));
     tell("job " + report.job + " submitted");
   }
-  auto sent = submit(folder / "merge.sh", report.job);
+  auto sent = submit_there(folder, "merge.sh", "merge_job", report.job);
   if (!sent) {
     Failure refused = sent.failure();
     refused.message += report.job.empty() ? ""
@@ -221,8 +223,6 @@ Result<SlurmReport> detach(const ArrayWork& work, const ArrayOptions& options,
     return refused;
   }
   report.merge_job = *sent;
-  PROBE_TRY(
-      write_file((folder / "merge_job").string(), std::as_bytes(std::span(report.merge_job))));
   tell("job " + report.merge_job + " joins the shards" +
        (report.job.empty() ? "" : " when job " + report.job + " has ended") + "; it speaks in " +
        (folder / "log/merge.txt").string());
@@ -374,8 +374,7 @@ Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
   if (report.job.empty()) PROBE_TRY(join(work, options, out, mixed_builds, report));
   PROBE_ASSIGN(auto lacking, work.missing(out, options.script.tasks));
   if (report.job.empty() && !lacking.empty()) {
-    PROBE_ASSIGN(report.job, submit(report.script));
-    PROBE_TRY(write_file((folder / "job").string(), std::as_bytes(std::span(report.job))));
+    PROBE_ASSIGN(report.job, submit_there(folder, "job.sh", "job"));
     if (options.tell) options.tell("job " + report.job + " submitted");
   }
   if (!report.job.empty()) {

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/compile/files.h"
 #include "runtime/plan/plan.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/stage.h"
+#include "tests/campaigns/base.h"
 #include "tests/campaigns/driver.h"
 #include "tests/plan/rule_of.h"
 #include "tests/plan/seal.h"
@@ -37,26 +37,8 @@ constexpr const char* kCame[] = {"refused by the verifier", "refused as it is ma
 
 constexpr std::size_t kRules = static_cast<std::size_t>(Came::kCount);  // counts of rules behind
 
-struct Base {
-  std::string file;
-  Bytes bytes;
-  std::shared_ptr<const stage::SharedAssets> assets;
-};
-
+using campaign::Base;
 constexpr const char* kName = "campaign_plans";
-[[noreturn]] void usage(const std::string& what) { campaign::usage(kName, what); }
-
-Base base_of(const std::string& file) {
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  auto compiled = compile::compile_files(
-      {file},
-      {.assets = AssetRoot(root + "/assets"), .library = root + "/dsl", .wants_plan = true});
-  if (!compiled) usage(to_text(compiled.failure()));
-  if (compiled->plan.empty()) usage(file + " makes no plan: `vlaprobe check` says why");
-  return {file, std::move(compiled->plan), nullptr};
-}
-
-AssetRoot assets() { return AssetRoot(VLAPROBE_SOURCE_DIR "/assets"); }
 
 class Mutation {
  public:
@@ -201,7 +183,8 @@ Result<Seen> play(const plan::Plan& plan, std::uint32_t task, std::uint32_t star
 void try_one(const std::vector<Base>& bases, campaign::Tally& tally) {
   Mutation mutation(tally.seed);
   const Base& base = bases[mutation.below(bases.size())];
-  Bytes bytes = base.bytes;
+  const auto valid = base.plan.bytes();
+  Bytes bytes(valid.begin(), valid.end());
   const bool same_files = mutation.apply(bytes);
   const auto count = [&](Came came) { ++tally.counts[static_cast<std::size_t>(came)]; };
   const auto plan = plan::Plan::from_bytes(std::move(bytes), {.identity = false});
@@ -221,7 +204,7 @@ void try_one(const std::vector<Base>& bases, campaign::Tally& tally) {
   std::shared_ptr<const stage::SharedAssets> files = base.assets;
   if (!same_files) {
     const std::uint32_t tasks[] = {task};
-    auto loaded = stage::SharedAssets::load(*plan, assets(), tasks);
+    auto loaded = stage::SharedAssets::load(*plan, campaign::asset_root(), tasks);
     if (!loaded) return count(Came::kNotMade);
     files = *loaded;
   }
@@ -259,18 +242,7 @@ void say(const campaign::Tally& tally) {
 
 int main(int argc, char** argv) {
   const campaign::Options options = campaign::read_options(kName, argc, argv);
-  if (options.words.empty()) usage("no text to begin with");
-  std::vector<Base> bases;
-  for (const std::string& file : options.words) {
-    Base& base = bases.emplace_back(base_of(file));
-    const auto plan = plan::Plan::from_bytes(base.bytes);
-    if (!plan) usage(to_text(plan.failure()));
-    std::vector<std::uint32_t> tasks(plan->tasks().size());
-    for (std::uint32_t i = 0; i < tasks.size(); ++i) tasks[i] = i;
-    auto loaded = stage::SharedAssets::load(*plan, assets(), tasks);
-    if (!loaded) usage(to_text(loaded.failure()));
-    base.assets = *loaded;
-  }
+  const std::vector<Base> bases = campaign::bases_of(kName, options);
   return campaign::run(
       options, {}, [&](campaign::Tally& tally) { try_one(bases, tally); }, say);
 }

@@ -15,11 +15,11 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/compile/files.h"
 #include "runtime/plan/plan.h"
 #include "runtime/run/policies.h"
 #include "runtime/stage/assets.h"
 #include "runtime/stage/stage.h"
+#include "tests/campaigns/base.h"
 #include "tests/campaigns/driver.h"
 
 namespace {
@@ -38,10 +38,7 @@ constexpr const char* kKinds[] = {
     "down onto the table", "a wrenched grasp"};
 constexpr std::size_t kKindCount = std::size(kKinds);
 
-struct Base {
-  plan::Plan plan;
-  std::shared_ptr<const stage::SharedAssets> assets;
-};
+using campaign::Base;
 
 class Hostile {
  public:
@@ -172,21 +169,7 @@ Outcome play(const Base& base, std::uint32_t task, std::uint32_t start, std::siz
 
 int main(int argc, char** argv) {
   const campaign::Options options = campaign::read_options(kName, argc, argv);
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  std::vector<Base> bases;
-  for (const std::string& file : options.words) {
-    auto compiled = compile::compile_files(
-        {file}, {.assets = AssetRoot(root + "/assets"), .library = root + "/dsl"});
-    if (!compiled || compiled->plan.empty()) campaign::usage(kName, file + " makes no plan");
-    auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
-    if (!plan) campaign::usage(kName, to_text(plan.failure()));
-    std::vector<std::uint32_t> tasks(plan->tasks().size());
-    for (std::uint32_t i = 0; i < tasks.size(); ++i) tasks[i] = i;
-    auto assets = stage::SharedAssets::load(*plan, AssetRoot(root + "/assets"), tasks);
-    if (!assets) campaign::usage(kName, to_text(assets.failure()));
-    bases.push_back({std::move(*plan), *assets});
-  }
-  if (bases.empty()) campaign::usage(kName, "no text to begin with");
+  const std::vector<Base> bases = campaign::bases_of(kName, options);
   return campaign::run(
       options, {},
       [&](campaign::Tally& tally) {

@@ -31,6 +31,7 @@
 #include "runtime/store/trace.h"
 #include "runtime/wire/json.h"
 #include "runtime/wire/msgpack.h"
+#include "tests/campaigns/base.h"
 #include "tests/campaigns/driver.h"
 #include "tests/runtime/libero/small_folder.h"
 #include "tests/runtime/scene/mutate.h"
@@ -81,29 +82,23 @@ std::string answer() {
 
 // A run of two episodes with its database, plan and traces.
 void make_run(const fs::path& folder) {
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  auto compiled =
-      compile::compile_files({root + "/suite/intact.probe"}, {.assets = AssetRoot(root + "/assets"),
-                                                              .library = root + "/dsl",
-                                                              .tasks = "carrot_on_plate"});
-  if (!compiled || compiled->plan.empty()) campaign::usage(kName, "the suite makes no plan");
-  const auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+  const campaign::Base base =
+      campaign::base_of(kName, VLAPROBE_SOURCE_DIR "/suite/intact.probe", "carrot_on_plate");
   run::RunOptions options;
   options.policy = "null";
   options.out = folder.string();
   options.seeds = {1};
   options.episodes = {{0, 1}};
-  options.assets = AssetRoot(root + "/assets");
-  const auto done = run::run(*plan, options);
+  options.assets = campaign::asset_root();
+  const auto done = run::run(base.plan, options);
   if (!done) campaign::usage(kName, to_text(done.failure()));
 }
 
 Status refused_by_compiler(const std::vector<std::string>& files,
                            std::map<std::string, std::string> unsaved) {
-  const std::string root = VLAPROBE_SOURCE_DIR;
-  const auto compiled = compile::compile_files(files, {.assets = AssetRoot(root + "/assets"),
-                                                       .library = root + "/dsl",
-                                                       .unsaved = std::move(unsaved)});
+  compile::FilesRequest request = campaign::request();
+  request.unsaved = std::move(unsaved);
+  const auto compiled = compile::compile_files(files, request);
   if (!compiled) return compiled.failure();
   if (compiled->diagnostics.has_errors()) return Failure{Fault::kUsage, "has mistakes", files[0]};
   return {};

@@ -21,7 +21,7 @@ std::string output_of(const std::string& command) {
 }
 
 TEST_CASE("examples/ci fits its systems' schemas, and what it calls there is") {
-  const probe::test::NodeOutcome said = probe::test::run_node(
+  const probe::test::ShellOutcome said = probe::test::run_node(
       "tests/outside/check_ci.mjs", "'" VLAPROBE_BINARY_DIR "/outside/node_modules' ci");
   REQUIRE_MESSAGE(said.status == 0, said.words);
   std::istringstream lines(said.words);

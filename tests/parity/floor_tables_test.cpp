@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "compiler/diag/text.h"
-#include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
+#include "tests/runtime/run/plan_of_text.h"
 
 using namespace probe;
 
@@ -27,18 +26,6 @@ constexpr FloorTable kTables[] = {
     {"google/expert.csv", "", ""},
     {"kitchen/floors.csv", "kitchen.probe", "kitchen"},
 };
-
-plan::Plan compiled(const std::string& text, const std::string& suite) {
-  const std::string file = kSuites + text;
-  CompileOptions options{VLAPROBE_SOURCE_DIR "/assets", suite};
-  options.library_folders = {VLAPROBE_SOURCE_DIR "/dsl"};
-  auto built = build(std::span<const std::string>(&file, 1), options);
-  REQUIRE_MESSAGE(built.ok(), to_text(built.failure()));
-  REQUIRE_MESSAGE(built->ok, render_text(built->diagnostics, built->sources));
-  auto plan = plan::Plan::from_bytes(std::move(built->plan));
-  REQUIRE_MESSAGE(plan.ok(), to_text(plan.failure()));
-  return std::move(plan).value();
-}
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
@@ -63,7 +50,7 @@ TEST_CASE("tables of floors and ceilings are of the suites as they are now") {
       if (kind != "plan") continue;
       words >> root;
       if (text.empty()) words >> text >> suite;
-      const plan::Plan plan = compiled(text, suite);
+      const plan::Plan plan = run::plan_of_file(kSuites + text, suite);
       CAPTURE(suite);
       CHECK(root == to_hex(plan.root()));
       trials[suite] = plan.episode_count(plan.suites().front());

@@ -166,7 +166,7 @@ TEST_CASE("what tree-sitter's scanner takes for the next declaration is what beg
 }
 
 TEST_CASE("grammar.json and parser.c are those of grammar.js") {
-  const test::NodeOutcome outcome =
+  const test::ShellOutcome outcome =
       test::run_node("tests/dsl/tree_sitter/grammar_json.mjs", "'" + test::kGrammar.string() + "'");
   CHECK_MESSAGE(outcome.status == 0, outcome.words,
                 "dsl/editor/tree-sitter/generate makes src/ anew");

@@ -39,7 +39,7 @@ TEST_CASE("an Indexed Job and its merge fit the API, and say what each shard run
   REQUIRE(merge.ok());
   REQUIRE(write_file(folder / "job.yaml", std::as_bytes(std::span(*shards))).ok());
   REQUIRE(write_file(folder / "merge.yaml", std::as_bytes(std::span(*merge))).ok());
-  const test::NodeOutcome said = test::run_node(
+  const test::ShellOutcome said = test::run_node(
       "tests/outside/check_ci.mjs", "'" VLAPROBE_BINARY_DIR "/outside/node_modules' k8s '" +
                                         folder.path + "/job.yaml' '" + folder.path + "/merge.yaml'");
   REQUIRE_MESSAGE(said.status == 0, said.words);

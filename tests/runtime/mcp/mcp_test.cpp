@@ -14,7 +14,7 @@ namespace {
 
 TEST_CASE("the protocol's own client calls every tool, and each answer fits the tool's schema") {
   const run::TemporaryFolder folder;
-  const test::NodeOutcome said =
+  const test::ShellOutcome said =
       test::run_node("tests/runtime/mcp/client.mjs",
                      "'" VLAPROBE_BINARY_DIR "/outside/node_modules' '" VLAPROBE_BINARY_DIR
                      "/vlaprobe' '" VLAPROBE_SOURCE_DIR "/suite/intact.probe' '" +
