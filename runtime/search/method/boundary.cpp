@@ -14,8 +14,9 @@ namespace {
 
 // The posterior's interval that is called one of 95 %: a search stops when it happens to be narrow,
 // and slopes lie between those of the grid, so that one of 95 % covers 92 % (simulation_test).
-constexpr double kCredible = 0.98;
-constexpr double kNotMonotoneBelow = 0.005, kDoubtfulBelow = 0.3;
+constexpr double kCredible = 0.985;
+constexpr int kMostChecks = 3;
+constexpr double kNotMonotoneBelow = 0.005, kDoubtfulBelow = 0.2;
 // A level is unfair after so many left-out trials, if more than counted ones.
 constexpr int kUnfairLevelAfter = 2;
 // Of longer axes so many levels are thought of at a time.
@@ -134,12 +135,14 @@ struct Boundary::State {
     const int n = static_cast<int>(own.n);
     if (n < options.own_trials) {
       const int size = room(options.budget);
-      // The end beside the last of them: what it tells decides where to look.
-      const int more = std::min(options.own_trials - n, size);
-      fill(0, more);
+      // The end beside the first of them: what it tells decides where to look.
       const std::vector<int> fair = fair_levels();
-      const int beside = std::min(options.end_trials - end_asked, size - more);
-      if (beside > 0 && fair.back() > 0) fill(fair.back(), beside), end_asked += beside;
+      if (fair.back() > 0 && end_asked < options.end_trials) {
+        const int beside = std::min(options.end_trials - end_asked, size / 2);
+        fill(fair.back(), beside);
+        end_asked += beside;
+      }
+      fill(0, std::min(options.own_trials - n, size - static_cast<int>(ask.size())));
       return !ask.empty();
     }
     if (exact_upper(own, kConfidence) < options.own_at_least) {
@@ -187,9 +190,16 @@ struct Boundary::State {
     const int reserved = checks == 0 ? check_size() : 0;
     BoundaryStatus now = verdict();
     const bool is_spent = trials + reserved >= options.budget;
+    // Success stays up to the last level that was tried; how far that may be is not known yet.
+    const int highest = highest_tried(), unfair = unfair_from();
+    if (now == BoundaryStatus::kNoFall && !is_spent && unfair < options.levels &&
+        unfair - highest > std::max(error_in_levels(), 1.0)) {
+      return fill((highest + unfair) / 2,
+                  room(std::min(options.budget, trials + options.end_trials)));
+    }
     if (now != BoundaryStatus::kUndecided || is_spent) {
       const bool is_doubtful =
-          checks == 1 && monotone >= kNotMonotoneBelow && monotone < kDoubtfulBelow;
+          checks < kMostChecks && monotone >= kNotMonotoneBelow && monotone < kDoubtfulBelow;
       if (check_size() > 0 && (checks == 0 || (is_doubtful && !is_spent))) {
         is_checking = true;
         check_asked = 0;

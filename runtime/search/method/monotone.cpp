@@ -1,6 +1,7 @@
 #include "runtime/search/method/monotone.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -12,25 +13,41 @@ namespace {
 constexpr int kMostDraws = 999, kEnoughExceedances = 20;
 
 struct Tried {
-  double k, n;
+  std::size_t k, n;
 };
 
-double largest_rise(const std::vector<Tried>& tried) {
+// x log x of whole numbers.
+class Entropies {
+ public:
+  explicit Entropies(std::size_t most) : values_(most + 1) {
+    for (std::size_t x = 2; x <= most; ++x) {
+      values_[x] = static_cast<double>(x) * std::log(static_cast<double>(x));
+    }
+  }
+  // The log likelihood of k of n at its own rate.
+  double operator()(std::size_t k, std::size_t n) const {
+    return values_[k] + values_[n - k] - values_[n];
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+double largest_rise(const std::vector<Tried>& tried, const Entropies& likelihood) {
   double largest = 0;
   for (std::size_t middle = 1; middle < tried.size(); ++middle) {
-    double k1 = 0, n1 = 0;
+    std::size_t k1 = 0, n1 = 0;
     for (std::size_t first = middle; first-- > 0;) {
       k1 += tried[first].k;
       n1 += tried[first].n;
-      double k2 = 0, n2 = 0;
+      const double before = likelihood(k1, n1);
+      std::size_t k2 = 0, n2 = 0;
       for (std::size_t last = middle; last < tried.size(); ++last) {
         k2 += tried[last].k;
         n2 += tried[last].n;
-        const double rise = k2 * n1 - k1 * n2;
-        if (rise <= 0) continue;
-        const double k = k1 + k2, n = n1 + n2;
-        // (p2 - p1)^2 / (p (1 - p) (1/n1 + 1/n2)), multiplied out.
-        largest = std::max(largest, rise * rise * n / (n1 * n2 * k * (n - k)));
+        if (k2 * n1 <= k1 * n2) continue;
+        const double ratio = before + likelihood(k2, n2) - likelihood(k1 + k2, n1 + n2);
+        largest = std::max(largest, ratio);
       }
     }
   }
@@ -40,8 +57,7 @@ double largest_rise(const std::vector<Tried>& tried) {
 // Rates that nowhere rise, in the order of `tried`.
 std::vector<double> isotonic_rates(const std::vector<Tried>& tried) {
   struct Pool {
-    double k, n;
-    std::size_t size;
+    std::size_t k, n, size;
   };
   std::vector<Pool> pools;
   for (const Tried& one : tried) {
@@ -56,7 +72,8 @@ std::vector<double> isotonic_rates(const std::vector<Tried>& tried) {
   }
   std::vector<double> rates;
   for (const Pool& pool : pools) {
-    rates.insert(rates.end(), pool.size, (pool.k + 0.5) / (pool.n + 1));
+    rates.insert(rates.end(), pool.size,
+                 (static_cast<double>(pool.k) + 0.5) / (static_cast<double>(pool.n) + 1));
   }
   return rates;
 }
@@ -65,10 +82,14 @@ std::vector<double> isotonic_rates(const std::vector<Tried>& tried) {
 
 double monotone_p(std::span<const stats::Count> successes, std::uint64_t seed) {
   std::vector<Tried> tried;
+  std::size_t all = 0;
   for (const stats::Count& count : successes) {
-    if (count.n > 0) tried.push_back({static_cast<double>(count.k), static_cast<double>(count.n)});
+    if (count.n > 0)
+      tried.push_back({static_cast<std::size_t>(count.k), static_cast<std::size_t>(count.n)});
   }
-  const double seen = largest_rise(tried);
+  for (const Tried& one : tried) all += one.n;
+  const Entropies likelihood(all);
+  const double seen = largest_rise(tried, likelihood);
   if (seen == 0) return 1;
   const std::vector<double> rates = isotonic_rates(tried);
   Draws draws(seed, "monotone");
@@ -77,11 +98,11 @@ double monotone_p(std::span<const stats::Count> successes, std::uint64_t seed) {
   for (int draw = 1; draw <= kMostDraws; ++draw) {
     for (std::size_t i = 0; i < tried.size(); ++i) {
       drawn[i].k = 0;
-      for (int j = 0; j < static_cast<int>(tried[i].n); ++j) {
-        drawn[i].k += draws.uniform() < rates[i] ? 1 : 0;
+      for (std::size_t j = 0; j < tried[i].n; ++j) {
+        drawn[i].k += draws.uniform() < rates[i] ? 1U : 0U;
       }
     }
-    exceedances += largest_rise(drawn) >= seen * (1 - 1e-9) ? 1 : 0;
+    exceedances += largest_rise(drawn, likelihood) >= seen * (1 - 1e-9) ? 1 : 0;
     if (exceedances == kEnoughExceedances) return exceedances / static_cast<double>(draw);
   }
   return (exceedances + 1) / (kMostDraws + 1.0);

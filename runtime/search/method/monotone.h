@@ -8,7 +8,7 @@
 
 namespace probe::search {
 
-// The p value of "success nowhere rises with the level": the largest score statistic by which one
+// The p value of "success nowhere rises with the level": the largest likelihood ratio by which one
 // run of levels has more success than the run right before it, against the same in bootstrap draws
 // from the isotonic fit (pool adjacent violators: Barlow, Bartholomew, Bremner and Brunk 1972),
 // each pool's rate drawn half a trial towards 1/2. Sequential Monte Carlo, at most 999 draws (Besag

@@ -39,7 +39,8 @@ struct Candidate {
 
 // Rubinstein and Kroese 2004, The Cross-Entropy Method, algorithm 4.1 with smoothing (5.2). A point
 // changes each axis with a chance of its own; a changed continuous axis or count is a truncated
-// normal, a choice one of its options. Elite are failing points first, of those the nearest to the
+// normal, a choice one of its options; a fifth of each round, and all of the first, is drawn over
+// the whole space, few axes at a time. Elite are failing points first, of those the nearest to the
 // own point. The end: the nearest failing points of all rounds, none like a nearer one (the same
 // axes changed, and nowhere more than a tenth of an axis apart), looked at again, then chosen.
 class Worst {

@@ -1,0 +1,125 @@
+#include "runtime/search/method/boundary.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "runtime/search/method/monotone.h"
+#include "tests/runtime/search/method/fake_policy.h"
+
+namespace probe::search {
+namespace {
+
+BoundaryFinding boundary_of(BoundaryOptions options, const auto& failure) {
+  Boundary method(options);
+  drive(method, failure, options.seed);
+  return method.finding();
+}
+
+}  // namespace
+
+TEST_CASE("a policy that fails from level 13 on has its tolerance just before") {
+  const auto found = boundary_of({.levels = 41}, [](int level) { return level >= 13 ? 1.0 : 0.0; });
+  CHECK(found.status == BoundaryStatus::kFound);
+  CHECK(found.threshold > 12);
+  CHECK(found.threshold < 13);
+  CHECK(found.low <= found.threshold);
+  CHECK(found.threshold <= found.high);
+  CHECK(found.own.k == found.own.n);
+  CHECK(found.trials < 100);
+}
+
+TEST_CASE("half is half of what is done at the own value, not half of all trials") {
+  // 0.6 falls to 0.4 half-way, which is not yet half, and to 0.1 at level 30.
+  const auto found = boundary_of({.levels = 41, .budget = 1000}, [](int level) {
+    return level < 20 ? 0.4 : level < 30 ? 0.6 : 0.9;
+  });
+  CHECK(found.status == BoundaryStatus::kFound);
+  CHECK(found.threshold > 27);
+  CHECK(found.threshold < 31);
+}
+
+TEST_CASE(
+    "a policy that never succeeds is said to fail at its own value, one that always does not to "
+    "fall") {
+  const auto never = boundary_of({.levels = 41}, [](int) { return 1.0; });
+  CHECK(never.status == BoundaryStatus::kFailsAtOwnValue);
+  CHECK(never.trials <= 24);
+  const auto always = boundary_of({.levels = 41}, [](int) { return 0.0; });
+  CHECK(always.status == BoundaryStatus::kNoFall);
+  CHECK(always.no_fall > 0.95);
+  CHECK(always.last_level == 40);
+}
+
+TEST_CASE("two levels are an axis, and half a level the least error") {
+  const auto found = boundary_of({.levels = 2}, [](int level) { return level == 1 ? 1.0 : 0.0; });
+  CHECK(found.status == BoundaryStatus::kFound);
+  CHECK(found.low >= 0);
+  CHECK(found.high <= 1);
+}
+
+TEST_CASE("a budget that is too small is said, with one that would do") {
+  const auto slope = [](int level) { return 0.1 + 0.8 * level / 40.0; };
+  const auto found = boundary_of({.levels = 41, .budget = 80}, slope);
+  CHECK(found.status == BoundaryStatus::kUndecided);
+  CHECK(found.trials <= 80);
+  REQUIRE(found.budget_needed);
+  CHECK(*found.budget_needed > 80);
+  CHECK(boundary_of({.levels = 41, .budget = 4}, slope).status == BoundaryStatus::kUndecided);
+}
+
+TEST_CASE("an unfair end is left out and counted, and the last fair level is told") {
+  const auto always =
+      boundary_of({.levels = 41}, [](int level) { return level > 24 ? -1.0 : 0.0; });
+  CHECK(always.status == BoundaryStatus::kNoFall);
+  CHECK(always.last_level >= 22);
+  CHECK(always.last_level <= 24);
+  CHECK(always.left_out > 0);
+  CHECK(always.left_out < 40);
+  const auto found = boundary_of({.levels = 41}, [](int level) {
+    return level > 24 ? -1.0 : level >= 13 ? 1.0 : 0.0;
+  });
+  CHECK(found.status == BoundaryStatus::kFound);
+  CHECK(found.threshold < 13);
+  CHECK(boundary_of({.levels = 41}, [](int level) { return level == 0 ? -1.0 : 0.0; }).status ==
+        BoundaryStatus::kLeftOut);
+  CHECK(boundary_of({.levels = 41}, [](int level) { return level > 0 ? -1.0 : 0.0; }).status ==
+        BoundaryStatus::kUndecided);
+}
+
+TEST_CASE("a policy that succeeds again further out has no tolerance") {
+  const auto found =
+      boundary_of({.levels = 41}, [](int level) { return level > 10 && level < 25 ? 1.0 : 0.0; });
+  CHECK(found.status == BoundaryStatus::kNotMonotone);
+  CHECK(found.monotone_p < 0.005);
+}
+
+TEST_CASE("success that falls all along is monotone, one that comes back is not") {
+  const std::vector<stats::Count> falls = {{20, 20}, {0, 0}, {18, 20}, {11, 20}, {3, 20}, {0, 20}};
+  const std::vector<stats::Count> comes_back = {{20, 20}, {2, 20}, {0, 0}, {18, 20}};
+  CHECK(monotone_p(falls, 1) == 1);
+  CHECK(monotone_p(comes_back, 1) == doctest::Approx(0.001));
+  CHECK(monotone_p({}, 1) == 1);
+}
+
+TEST_CASE("a boundary that is told the same asks the same, batch by batch") {
+  Boundary a({.levels = 41, .seed = 3}), b({.levels = 41, .seed = 3});
+  Draws draws(3, "policy");
+  while (!a.done()) {
+    const std::vector<int> asked(a.ask().begin(), a.ask().end());
+    REQUIRE(asked == std::vector<int>(b.ask().begin(), b.ask().end()));
+    REQUIRE(!asked.empty());
+    REQUIRE(asked.size() <= 8);
+    std::vector<Outcome> outcomes;
+    for (const int level : asked) {
+      outcomes.push_back(draws.uniform() < 0.2 + 0.015 * level ? Outcome::kFailed
+                                                               : Outcome::kSucceeded);
+    }
+    a.tell(outcomes);
+    b.tell(outcomes);
+  }
+  CHECK(b.done());
+  CHECK(a.finding().threshold == b.finding().threshold);
+}
+
+}  // namespace probe::search
