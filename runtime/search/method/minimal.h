@@ -23,7 +23,8 @@ using AxisSet =
 struct MinimalOptions {
   int axes = 0;  // 1..63
   // A set fails reliably at a failure rate of `fails` or more and does not at `passes` or less; of
-  // rates between the two either may be said.
+  // rates between the two either may be said. `passes` lies above the failure rate of the own
+  // point, `fails` below that of the case, as `confirm.h` found them.
   double passes = 0.3, fails = 0.7;
   double error = 0.05;   // that any set at all is judged wrongly
   int batch = 4;         // trials at once, at least

@@ -19,7 +19,10 @@ constexpr std::array<Weighed, 4> kFloors = {{{0.005, 0.55}, {0.1, 0.2}, {0.25, 0
 // Of no fall to half: flat, a fall to a higher floor somewhere, one that is over beyond the end.
 constexpr double kFlat = 0.1, kHigherFloor = 0.08, kBeyondEnd = 0.07;
 constexpr std::array<double, 2> kHigherFloors = {0.65, 0.82};
-constexpr int kHigherPlaces = 10, kBeyondPlaces = 10;
+constexpr std::size_t kHigherPlaces = 10, kBeyondPlaces = 10;
+constexpr std::size_t kCurves = ToleranceGrid::kInside * kSlopes.size() * kFloors.size() + 1 +
+                                kHigherPlaces * kSlopes.size() * kHigherFloors.size() +
+                                kBeyondPlaces * kSlopes.size();
 
 // Bins that a batch is chosen with, each about as probable; a few more where the curves change.
 constexpr std::size_t kBins = 48;
@@ -36,7 +39,7 @@ double curve(double x, double place, double slope, double floor, double at) {
 }
 
 // A group of less is not thought of when a batch is chosen; a weight of less is 0 from then on.
-constexpr double kNegligible = 1e-7, kGone = 1e-40;
+constexpr double kNegligible = 1e-7, kGone = 1e-20;
 
 double entropy(double p) {
   double sum = 0;
@@ -58,15 +61,18 @@ void ToleranceGrid::add_curve(std::size_t group, double tolerance, double slope,
   const double at = floor < 0.5 ? (0.5 - floor) / (1 - floor) : 0.5;
   const double axis = levels_ - 1;
   for (int level = 0; level < levels_; ++level) {
-    curve_.push_back(floor >= 1 ? 1 : curve(level / axis, tolerance, slope, floor, at));
+    const double success = floor >= 1 ? 1 : curve(level / axis, tolerance, slope, floor, at);
+    curve_[static_cast<std::size_t>(level) * kCurves + curve_count()] = static_cast<float>(success);
   }
   while (first_of_.size() <= group) first_of_.push_back(curve_count());
   ++curves_;
-  for (std::size_t rate = 0; rate < kRates.size(); ++rate) weight_.push_back(prior);
+  weight_.insert(weight_.end(), kRates.size(), prior);
 }
 
 ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
   PROBE_CHECK(levels >= 2, "an axis has its own value and an end");
+  curve_.resize(static_cast<std::size_t>(levels) * kCurves);
+  weight_.reserve(kCurves * kRates.size());
   const double slopes = static_cast<double>(kSlopes.size());
   const double inside = (1 - kFlat - kHigherFloor - kBeyondEnd) / static_cast<double>(kInside);
   for (std::size_t cell = 0; cell < kInside; ++cell) {
@@ -78,8 +84,8 @@ ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
     }
   }
   add_curve(kInside, 1, 1, 1, kFlat);
-  for (int place = 0; place < kHigherPlaces; ++place) {
-    const double x = (place + 0.5) / kHigherPlaces;
+  for (std::size_t place = 0; place < kHigherPlaces; ++place) {
+    const double x = (static_cast<double>(place) + 0.5) / kHigherPlaces;
     for (const double slope : kSlopes) {
       for (const double floor : kHigherFloors) {
         add_curve(kInside, x, slope, floor,
@@ -87,28 +93,20 @@ ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
       }
     }
   }
-  for (int place = 0; place < kBeyondPlaces; ++place) {
-    const double x = 1 + (place + 0.5) / (2 * kBeyondPlaces);
+  for (std::size_t place = 0; place < kBeyondPlaces; ++place) {
+    const double x = 1 + (static_cast<double>(place) + 0.5) / (2 * kBeyondPlaces);
     for (const double slope : kSlopes) {
       add_curve(kInside, x, slope, 0, kBeyondEnd / (kBeyondPlaces * slopes));
     }
   }
   first_of_.push_back(curve_count());
-  // By level, so that an update reads in order.
-  std::vector<double> by_level(curve_.size());
-  const std::size_t curves = curve_count(), count = static_cast<std::size_t>(levels_);
-  for (std::size_t c = 0; c < curves; ++c) {
-    for (std::size_t level = 0; level < count; ++level) {
-      by_level[level * curves + c] = curve_[c * count + level];
-    }
-  }
-  curve_ = std::move(by_level);
+  PROBE_CHECK(curve_count() == kCurves, "every curve has its place");
   groups_.fill(1);
   normalise();
 }
 
 void ToleranceGrid::update(int level, bool succeeded) {
-  const double* at = curve_.data() + static_cast<std::size_t>(level) * curve_count();
+  const float* at = curve_.data() + static_cast<std::size_t>(level) * kCurves;
   for (std::size_t group = 0; group < kGroups; ++group) {
     if (groups_[group] == 0) continue;
     for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c) {
@@ -126,23 +124,27 @@ void ToleranceGrid::update(int level, bool succeeded) {
 void ToleranceGrid::normalise() {
   double sum = 0;
   for (std::size_t group = 0; group < kGroups; ++group) {
+    if (groups_[group] == 0) continue;
     double in_group = 0;
-    for (std::size_t i = first_of_[group] * kRates.size(); i < first_of_[group + 1] * kRates.size();
-         ++i) {
-      in_group += weight_[i];
-    }
+    for (const double weight : weights_of(group)) in_group += weight;
     groups_[group] = in_group;
     sum += in_group;
   }
   PROBE_CHECK(sum > 0, "some curve explains what was seen");
   for (std::size_t group = 0; group < kGroups; ++group) {
-    groups_[group] = groups_[group] / sum < kGone ? 0 : groups_[group] / sum;
-    for (std::size_t i = first_of_[group] * kRates.size(); i < first_of_[group + 1] * kRates.size();
-         ++i) {
-      weight_[i] = groups_[group] == 0 ? 0 : weight_[i] / sum;
-      if (weight_[i] < kGone) weight_[i] = 0;
+    if (groups_[group] == 0) continue;
+    groups_[group] /= sum;
+    if (groups_[group] < kGone) groups_[group] = 0;
+    for (double& weight : weights_of(group)) {
+      weight /= sum;
+      if (weight < kGone) weight = 0;
     }
   }
+}
+
+std::span<double> ToleranceGrid::weights_of(std::size_t group) {
+  return std::span(weight_).subspan(first_of_[group] * kRates.size(),
+                                    (first_of_[group + 1] - first_of_[group]) * kRates.size());
 }
 
 double ToleranceGrid::beyond(int level) const {
@@ -180,7 +182,7 @@ ToleranceGrid::Bins ToleranceGrid::bins(std::span<const int> levels) const {
   }
   const std::size_t count = bins.weight.size();
   bins.success.assign(levels.size() * count, 0);
-  std::vector<double> rate(curve_count());  // weight times own rate, of a curve
+  std::vector<double> rate(kCurves);  // weight times own rate, of a curve
   for (std::size_t group = 0; group < kGroups; ++group) {
     if (groups_[group] < kNegligible) continue;
     for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c) {
@@ -189,7 +191,7 @@ ToleranceGrid::Bins ToleranceGrid::bins(std::span<const int> levels) const {
       }
     }
     for (std::size_t i = 0; i < levels.size(); ++i) {
-      const double* at = curve_.data() + static_cast<std::size_t>(levels[i]) * curve_count();
+      const float* at = curve_.data() + static_cast<std::size_t>(levels[i]) * kCurves;
       double success = 0;
       for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c)
         success += rate[c] * at[c];

@@ -41,16 +41,17 @@ class ToleranceGrid {
   };
   // One curve at every level, and its prior; curves of a group stand together.
   void add_curve(std::size_t group, double tolerance, double slope, double floor, double prior);
+  std::span<double> weights_of(std::size_t group);
   Bins bins(std::span<const int> levels) const;
 
-  std::size_t curve_count() const { return curves_; }
+  std::size_t curve_count() const { return curves_; }  // so far
 
   int levels_ = 0;
   std::size_t curves_ = 0;
-  std::vector<std::size_t> first_of_;  // the first curve of a group; and the end
-  std::vector<double> curve_;   // level x curve once they are all there: success over own rate
-  std::vector<double> weight_;  // curve x rate
-  std::array<double, kGroups> groups_{};
+  std::vector<std::size_t> first_of_;     // the first curve of a group; and the end
+  std::vector<float> curve_;              // level x curve: success over own rate
+  std::vector<double> weight_;            // curve x rate
+  std::array<double, kGroups> groups_{};  // a group of 0 is gone for good
 };
 
 }  // namespace probe::search

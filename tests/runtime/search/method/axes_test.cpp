@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -164,6 +165,14 @@ TEST_CASE("without an interaction none is named in 95 % of 200 searches") {
     CHECK(none >= 0.95 * searches - 4);  // twice the standard error of 200 searches
     CHECK(right >= 0.95 * searches - 4);
   }
+}
+
+TEST_CASE("what 5,000 points cost is printed") {
+  const std::clock_t begun = std::clock();
+  const AxesFinding found = found_of(clutter_and_words, 1, {.points = 5000});
+  MESSAGE("axes: 5,000 points asked, told and weighed in "
+          << static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC << " s of CPU");
+  CHECK(named_of(found).size() == 1);
 }
 
 // A corner of u x v that fails with `high`, all else with `low`.

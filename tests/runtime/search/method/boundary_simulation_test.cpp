@@ -139,6 +139,27 @@ TEST_CASE("slopes are found within 5 % of the axis in 95 % of 200 searches") {
       kSearches);
 }
 
+TEST_CASE("a shallow slope takes more trials, and a small budget says how many about") {
+  const auto shallow = [](Draws& d) { return starts_around(between(d, 0.2, 0.8), 0.2, 0.9); };
+  check_found(
+      simulate("starts that differ, sd 0.2", 60, {.levels = kLevels, .budget = 1500}, shallow), 60);
+  std::vector<int> needed;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Draws draws(seed, "small budget");
+    const FakeAxis fake = shallow(draws);
+    Boundary method({.levels = kLevels, .seed = seed, .budget = 160});
+    drive(
+        method, [&](int level) { return 1 - fake.success(level / (kLevels - 1.0)); }, seed);
+    if (const auto budget = method.finding().budget_needed) needed.push_back(*budget);
+  }
+  REQUIRE(needed.size() > 30);
+  std::sort(needed.begin(), needed.end());
+  MESSAGE("with a budget of 160, "
+          << needed.size() << " of 60 undecided; budget said: median " << needed[needed.size() / 2]
+          << ", " << needed[needed.size() / 10] << " to " << needed[needed.size() * 9 / 10]
+          << " in 80 %");
+}
+
 TEST_CASE("what has no tolerance is not given one") {
   const int searches = 100;
   const BoundaryOptions options{.levels = kLevels};
