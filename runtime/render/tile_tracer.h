@@ -30,10 +30,13 @@ struct TileHits {
   std::array<const TriangleData*, kRoom> triangle;  // that of the three
   alignas(64) std::array<float, kRoom> t, u, v;
 
-  // How many follow each other on one triangle, from hit `first` on.
+  // How many follow each other on one triangle of one instance, from hit `first` on: two things may
+  // be of one mesh.
   std::size_t run(std::size_t first) const {
     std::size_t end = first + 1;
-    while (end < static_cast<std::size_t>(count) && triangle[end] == triangle[first]) ++end;
+    while (end < static_cast<std::size_t>(count) && triangle[end] == triangle[first] &&
+           instance[end] == instance[first])
+      ++end;
     return end - first;
   }
   // Those from `first` to before `end`, to an earlier place.

@@ -398,6 +398,28 @@ Pose somewhere(std::mt19937& random) {
           Quat(unit(random), unit(random), unit(random), 1.1).normalized()};
 }
 
+TEST_CASE("two things of one mesh that meet in the picture lie where each of them lies") {
+  const auto shared = square(0.2);
+  SceneSpec spec;
+  spec.camera = plain_camera(128, 128);
+  spec.dynamics = {visual(shared, 0, "front"), visual(shared, 1, "behind")};
+  const auto renderer = make(spec);
+  // Right of the front one's upper right triangle the same of the other: their hits follow each other.
+  const std::vector<Pose> poses = {at(1.0, 0, 0), at(1.1, -0.15, 0)};
+  const auto misplaced = [](const FrameView& frame) {
+    int count = 0;
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      const double depth[] = {0, 1.0, 1.1};
+      count += std::abs(frame.depth[i] - depth[frame.segmentation[i]]) > 1e-5 ? 1 : 0;
+    }
+    return count;
+  };
+  CHECK(misplaced(draw(*renderer, poses)) == 0);
+  const Result<FrameView> moving = renderer->render_from(spec.camera, poses);
+  REQUIRE(moving.ok());
+  CHECK(misplaced(*moving) == 0);
+}
+
 TEST_CASE("where nothing has moved the picture is kept, and still it is the full one") {
   for (const std::size_t bodies : {3, 40}) {
     CAPTURE(bodies);
