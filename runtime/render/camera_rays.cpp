@@ -12,17 +12,6 @@ Failure camera_failure(const std::string& message) {
   return {.code = Fault::kRender, .message = message, .where = "camera"};
 }
 
-// Directions not yet of unit length, in the order of a tile's samples.
-struct Directions {
-  alignas(64) std::array<double, kTileSamples> x, y, z;
-
-  void set(std::size_t s, const Vec3& d) {
-    x[s] = d.x();
-    y[s] = d.y();
-    z[s] = d.z();
-  }
-};
-
 // A tile's directions are the sum of its column's part and its row's. `least`: the least cosine of
 // each place in a tile so far.
 PROBE_CLONES void normalise(const Directions& __restrict across, const Directions& __restrict down,
@@ -92,8 +81,10 @@ Status check_camera(const Camera& camera) {
   return {};
 }
 
-Status make_camera_rays(const Camera& camera, CameraRays& rays) {
+Status TileRays::begin(const Camera& camera, CameraRays& rays) {
   PROBE_TRY(check_camera(camera));
+  camera_ = camera;
+  row_at_ = -1;
   rays.width = camera.width;
   rays.height = camera.height;
   rays.tiles_x = (camera.width + kTileSide - 1) / kTileSide;
@@ -101,41 +92,69 @@ Status make_camera_rays(const Camera& camera, CameraRays& rays) {
   for (int k = 0; k < 3; ++k) {
     rays.origin[static_cast<std::size_t>(k)] = static_cast<float>(camera.position[k]);
   }
-  const std::size_t samples = static_cast<std::size_t>(rays.tiles()) * kTileSamples;
-  rays.dx.resize(samples);
-  rays.dy.resize(samples);
-  rays.dz.resize(samples);
-  rays.cosine.resize(samples);
+  const std::size_t samples =
+      (rays.is_tile ? std::size_t{1} : static_cast<std::size_t>(rays.tiles())) * kTileSamples;
+  for (auto* array : {&rays.dx, &rays.dy, &rays.dz, &rays.cosine}) array->resize(samples);
 
   // forward + (x - cx) / fx right is the same for a whole column, (y - cy) / fy down for a row.
-  const Mat3& axes = camera.forward_left_up;
-  const Vec3 forward = axes.col(0), right = -axes.col(1), down = -axes.col(2);
-  std::vector<Directions> columns(static_cast<std::size_t>(rays.tiles_x));
-  for (std::size_t tile = 0; tile < columns.size(); ++tile) {
+  const Vec3 forward = camera.forward_left_up.col(0), right = -camera.forward_left_up.col(1);
+  columns_.resize(static_cast<std::size_t>(rays.tiles_x));
+  for (std::size_t tile = 0; tile < columns_.size(); ++tile) {
     std::array<Vec3, kTileSide> steps;
     for (std::size_t k = 0; k < kTileSide; ++k) {
       const auto x = static_cast<double>(tile * kTileSide + k);
       steps[k] = forward + (x + 0.5 - camera.cx) / camera.fx * right;
     }
-    for (std::size_t s = 0; s < kTileSamples; ++s) columns[tile].set(s, steps[kTileOffsets[s].x]);
+    for (std::size_t s = 0; s < kTileSamples; ++s) columns_[tile].set(s, steps[kTileOffsets[s].x]);
   }
-  const double axis[3] = {forward.x(), forward.y(), forward.z()};
-  std::array<float, kTileSamples> least;
-  least.fill(1.0f);
-  Directions row;
-  for (std::size_t ty = 0; ty < static_cast<std::size_t>(rays.tiles_y); ++ty) {
+  return {};
+}
+
+void TileRays::make(int tile, CameraRays& rays, std::array<float, kTileSamples>& least) {
+  const int row = tile / rays.tiles_x;
+  if (row != row_at_) {
+    row_at_ = row;
+    const Vec3 down = -camera_.forward_left_up.col(2);
     std::array<Vec3, kTileSide> steps;
     for (std::size_t k = 0; k < kTileSide; ++k) {
-      const auto y = static_cast<double>(ty * kTileSide + k);
-      steps[k] = (y + 0.5 - camera.cy) / camera.fy * down;
+      const auto y = static_cast<double>(row * kTileSide) + static_cast<double>(k);
+      steps[k] = (y + 0.5 - camera_.cy) / camera_.fy * down;
     }
-    for (std::size_t s = 0; s < kTileSamples; ++s) row.set(s, steps[kTileOffsets[s].y]);
-    for (std::size_t tx = 0; tx < columns.size(); ++tx) {
-      const std::size_t base = (ty * columns.size() + tx) * kTileSamples;
-      normalise(columns[tx], row, axis, rays.dx.data() + base, rays.dy.data() + base,
-                rays.dz.data() + base, rays.cosine.data() + base, least.data());
-    }
+    for (std::size_t s = 0; s < kTileSamples; ++s) row_.set(s, steps[kTileOffsets[s].y]);
   }
+  const Vec3 forward = camera_.forward_left_up.col(0);
+  const double axis[3] = {forward.x(), forward.y(), forward.z()};
+  const std::size_t base = rays.base(tile);
+  normalise(columns_[static_cast<std::size_t>(tile % rays.tiles_x)], row_, axis,
+            rays.dx.data() + base, rays.dy.data() + base, rays.dz.data() + base,
+            rays.cosine.data() + base, least.data());
+}
+
+void TileRays::make(int tile, CameraRays& rays) {
+  std::array<float, kTileSamples> least;
+  least.fill(1.0f);
+  make(tile, rays, least);
+}
+
+Status TileRays::look(const Camera& camera, CameraRays& rays) {
+  rays.is_tile = true;
+  PROBE_TRY(begin(camera, rays));
+  // A picture's outermost ray ends in a corner.
+  std::array<float, kTileSamples> least;
+  least.fill(1.0f);
+  const int right = rays.tiles_x - 1, last = rays.tiles() - 1;
+  for (const int corner : {0, right, last - right, last}) make(corner, rays, least);
+  rays.nearest_depth = kNearest * *std::min_element(least.begin(), least.end());
+  return {};
+}
+
+Status make_camera_rays(const Camera& camera, CameraRays& rays) {
+  rays.is_tile = false;
+  TileRays by_tile;
+  PROBE_TRY(by_tile.begin(camera, rays));
+  std::array<float, kTileSamples> least;
+  least.fill(1.0f);
+  for (int tile = 0; tile < rays.tiles(); ++tile) by_tile.make(tile, rays, least);
   rays.nearest_depth = kNearest * *std::min_element(least.begin(), least.end());
   return {};
 }

@@ -14,7 +14,7 @@ namespace probe::render {
 
 inline constexpr int kTileSide = 16;
 inline constexpr int kBlockSide = 8;
-inline constexpr float kNearest = 0.01f;  // m along the ray
+inline constexpr float kNearest = 0.01f;   // m along the ray
 inline constexpr float kFarthest = 10.0f;  // m along the ray
 
 // Pixel of a sample within its tile.
@@ -44,8 +44,43 @@ struct CameraRays {
   std::vector<float> dx, dy, dz;
   std::vector<float> cosine;  // dot(d, forward): depth = t cosine
   float nearest_depth = 0;    // 0.01 times the least cosine: nothing nearer can be hit
+  bool is_tile = false;       // the arrays hold one tile, that which was made last
 
   int tiles() const { return tiles_x * tiles_y; }
+  // Where a tile's samples begin.
+  std::size_t base(int tile) const {
+    return is_tile ? 0 : static_cast<std::size_t>(tile) * kTileSamples;
+  }
+};
+
+// Directions not yet of unit length, in the order of a tile's samples.
+struct Directions {
+  alignas(64) std::array<double, kTileSamples> x, y, z;
+
+  void set(std::size_t s, const Vec3& d) {
+    x[s] = d.x();
+    y[s] = d.y();
+    z[s] = d.z();
+  }
+};
+
+// Rays of a camera that moves are needed once, tile by tile, and stay near the processor.
+class TileRays {
+ public:
+  // `rays` gets what a tile does not change. Fails as check_camera does.
+  Status look(const Camera& camera, CameraRays& rays);
+  // Fills it with a tile's.
+  void make(int tile, CameraRays& rays);
+
+ private:
+  friend Status make_camera_rays(const Camera& camera, CameraRays& rays);
+  Status begin(const Camera& camera, CameraRays& rays);
+  void make(int tile, CameraRays& rays, std::array<float, kTileSamples>& least);
+
+  Camera camera_;
+  std::vector<Directions> columns_;
+  Directions row_;
+  int row_at_ = -1;  // of tiles, whose directions those are
 };
 
 // The camera whose pixels are the samples of this one's.

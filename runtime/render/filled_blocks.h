@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/cone_triangle.h"
 #include "runtime/render/hit_sheet.h"
 #include "runtime/render/top_scene.h"
 
@@ -26,36 +27,21 @@ class BlockFills {
   // All triangles of `scene` as `camera` sees them; a scene of more than 512 has no filled blocks.
   void look(const TopScene& scene, const Camera& camera);
   FilledBlocks of_tile(int tile_x, int tile_y);
-  // Draws what the tile that was last asked for shows in its other blocks; holds until the next
-  // call.
-  KnownTriangles draw_rest(int tile_x, int tile_y, const FilledBlocks& filled);
+  // At most so close is whatever the tile that was last asked for shows, or what rays end at.
+  float closest(int tile_x, int tile_y) const;
+  // Draws what it shows in its other blocks, but for those of which all packets are hidden; holds
+  // until the next call.
+  KnownTriangles draw_rest(int tile_x, int tile_y, const FilledBlocks& filled, PacketSet hidden);
 
  private:
-  // Pixels, both ends included.
-  struct Rectangle {
-    float x0, x1, y0, y1;
-  };
-  // Seen from the camera's place, a ray through pixel (x, y) meets the triangle where the three
-  // values a x + b y + c, one an edge, are positive; their weighted sum is 1 / depth.
-  struct Triangle {
-    float a[3], b[3], c[3];
-    Rectangle bounds;
-    float closeness_a, closeness_b, closeness_c;
-    float closest;  // 1 / the nearest corner's depth, infinite where that is behind the camera
-    // Of a sample alone: how wrong the edges' values may be in Embree and here, and places, m.
-    float touch[3], doubt;
-    bool thin;  // rounding could turn it over
-  };
+  void draw_block(const PixelRectangle& block, int left, int top);
+  FilledBlock find(const PixelRectangle& block) const;
 
-  void add(const Vec3 (&corners)[3], double doubt, const Camera& camera);
-  void draw_block(const Rectangle& block, int left, int top);
-  FilledBlock find(const Rectangle& block) const;
+  static PixelRectangle rectangle_of(int tile_x, int tile_y);
 
   float farthest_ = 0;  // greatest depth whose points are all within reach of rays
-  float longest_ = 1;   // ray, with a forward part of 1
-  float across_ = 0;    // pixels a radian straight ahead
-  float depth_doubt_ = 0;
-  std::vector<Triangle> triangles_;
+  ConeView view_;
+  std::vector<ConeTriangle> triangles_;
   std::vector<TriangleName> names_;  // of these
   // The edges' values and bounds again, an array a quantity, for the search by tile.
   std::array<std::vector<float>, 14> columns_;

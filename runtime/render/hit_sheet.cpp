@@ -58,7 +58,8 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
                 touch2 = Eight{} - touch[2];
     const Eight inside0 = Eight{} + (solid ? touch[0] : kNowhere), inside1 = Eight{} + touch[1],
                 inside2 = Eight{} + touch[2];
-    const EightInts number = EightInts{} + static_cast<std::int32_t>(batch.triangle[i]);
+    const EightInts number =
+        EightInts{} + (2 * static_cast<std::int32_t>(batch.triangle[i]) + batch.fine[i]);
     const float a0 = 4 * a[0], a1 = 4 * a[1], a2 = 4 * a[2], w4 = 4 * wx;
     // The closest that it is in a packet, of that packet's first sample's.
     const float highest = batch.w[i] + (wx > 0 ? 3 * wx : 0.0f) + (wy > 0 ? wy : 0.0f);
@@ -128,21 +129,41 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
 
 // A block's packets, one pointer each.
 PROBE_CLONES void answer_all(const float* const* closest, const float* const* other,
-                             const float* __restrict farthest, const float* __restrict cosine,
-                             std::uint8_t* __restrict hit, std::uint8_t* __restrict open) {
+                             const std::uint32_t* const* owner, const float* __restrict farthest,
+                             const float* __restrict cosine, std::uint8_t* __restrict hit,
+                             std::uint8_t* __restrict open) {
   for (std::size_t p = 0; p < 8; ++p) {
     const float* __restrict c = closest[p];
     const float* __restrict o = other[p];
+    const std::uint32_t* __restrict of = owner[p];
     for (std::size_t k = 0; k < 8; ++k) {
       const float front = c[k], second = o[k];
       const float still = 1.0f / (farthest[8 * p + k] * cosine[8 * p + k]);
       const float behind = second > still ? second : still;
       const float any = second > front ? second : front;
-      const int is_hit = front * kClearlyBehind > behind ? 1 : 0;
-      const int is_miss = any < kClearlyBehind * still ? 1 : 0;
+      const float least = front * ((of[k] & 1) != 0 ? kFinelyBehind : kClearlyBehind);
+      const int is_hit = least > behind ? 1 : 0;
+      const int is_miss = any < kFinelyBehind * still ? 1 : 0;
       hit[8 * p + k] = static_cast<std::uint8_t>(is_hit);
       open[8 * p + k] = static_cast<std::uint8_t>(1 - (is_hit | is_miss));
     }
+  }
+}
+
+PROBE_CLONES void cover_all(const float* const* closest, const float* const* other,
+                            const std::uint32_t* const* owner, float closeness,
+                            std::uint8_t* __restrict covered) {
+  for (std::size_t p = 0; p < 8; ++p) {
+    const float* __restrict c = closest[p];
+    const float* __restrict o = other[p];
+    const std::uint32_t* __restrict of = owner[p];
+    int all = 1;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const float least = c[k] * ((of[k] & 1) != 0 ? kFinelyBehind : kClearlyBehind);
+      const float behind = o[k] > closeness ? o[k] : closeness;
+      all &= least > behind ? 1 : 0;
+    }
+    covered[p] = static_cast<std::uint8_t>(all);
   }
 }
 
@@ -176,17 +197,41 @@ void HitSheet::draw(const TriangleBatch& batch) {
   draw_all(batch, packets_x_, closest_.data(), other_.data(), owner_.data(), hidden_.data());
 }
 
+std::array<std::size_t, 8> HitSheet::packets_of(int block_x, int block_y) const {
+  std::array<std::size_t, 8> out;
+  for (int p = 0; p < 8; ++p) {
+    out[static_cast<std::size_t>(p)] =
+        packet_at(2 * block_x + ((p >> 1) & 1), 4 * block_y + (p & 1) + 2 * (p >> 2));
+  }
+  return out;
+}
+
+PacketSet HitSheet::covers(int block_x, int block_y, float closeness) const {
+  const std::array<std::size_t, 8> packets = packets_of(block_x, block_y);
+  const float *closest[8], *other[8];
+  const std::uint32_t* owner[8];
+  for (std::size_t p = 0; p < 8; ++p) {
+    closest[p] = closest_.data() + packets[p];
+    other[p] = other_.data() + packets[p];
+    owner[p] = owner_.data() + packets[p];
+  }
+  std::uint8_t covered[8];
+  cover_all(closest, other, owner, closeness, covered);
+  PacketSet out = 0;
+  for (std::size_t p = 0; p < 8; ++p) out |= PacketSet{covered[p]} << p;
+  return out;
+}
+
 void HitSheet::answer(int block_x, int block_y, const float* farthest, const float* cosines,
                       BlockAnswers& out) const {
+  const std::array<std::size_t, 8> packets = packets_of(block_x, block_y);
   const float *closest[8], *other[8];
-  for (int p = 0; p < 8; ++p) {
-    const std::size_t at =
-        packet_at(2 * block_x + ((p >> 1) & 1), 4 * block_y + (p & 1) + 2 * (p >> 2));
-    closest[p] = closest_.data() + at;
-    other[p] = other_.data() + at;
-    out.triangle[static_cast<std::size_t>(p)] = owner_.data() + at;
+  for (std::size_t p = 0; p < 8; ++p) {
+    closest[p] = closest_.data() + packets[p];
+    other[p] = other_.data() + packets[p];
+    out.owner[p] = owner_.data() + packets[p];
   }
-  answer_all(closest, other, farthest, cosines, out.hit.data(), out.open.data());
+  answer_all(closest, other, out.owner.data(), farthest, cosines, out.hit.data(), out.open.data());
 }
 
 }  // namespace probe::render

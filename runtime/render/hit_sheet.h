@@ -23,14 +23,19 @@ inline constexpr double kPlaceDoubt = 3e-6;
 // ...
 inline constexpr float kDepthDoubt = 7e-4f;
 static_assert(1 - 2 * kDepthDoubt > kClearlyBehind);
+// ... or, as of most triangles, by less than this one, and what is less close than so much of it is
+// clearly behind: the lining of a drawer, half a millimetre beneath its board.
+inline constexpr float kFineDoubt = 2e-4f, kFinelyBehind = 0.9994f;
+static_assert(1 - 2 * kFineDoubt > kFinelyBehind);
 // ... and the distance along a ray by less than this, m: Embree's and ours then agree within the
 // millimetre that TileTracer's refine() asks for.
 inline constexpr float kDistanceDoubt = 3e-4f;
 
 // Triangles as they are drawn, an array a quantity. A sample (x, y) pixels from the first sample of
 // the first packet is touched where all three a x + b y + e are at least -touch, and inside, of a
-// triangle that is `solid`, where they exceed touch. Closeness, 1 / depth, is w + wx x + wy y
-// there; of one that is not solid, at most.
+// triangle that is `solid`, where they exceed touch. Closeness, 1 / depth, is at most w + wx x +
+// wy y there; of one that is solid also at least that but for twice kDepthDoubt, and of one that is
+// `fine`, too, but for twice kFineDoubt of it.
 struct TriangleBatch {
   static constexpr std::size_t kSize = 256;
   using Floats = std::array<float, kSize>;
@@ -38,7 +43,7 @@ struct TriangleBatch {
   alignas(64) std::array<Floats, 3> a, b, e, touch;
   alignas(64) Floats w, wx, wy;
   alignas(64) Ints left, top, columns, rows;  // packets of 4 x 2 samples
-  alignas(64) Ints solid;
+  alignas(64) Ints solid, fine;
   alignas(64) std::array<std::uint32_t, kSize> triangle;  // its number
   // Those to draw.
   std::array<std::uint16_t, kSize> order;
@@ -49,11 +54,18 @@ struct TriangleBatch {
 struct BlockAnswers {
   alignas(64) std::array<std::uint8_t, 64> hit;   // 1: meets the sheet's triangle
   alignas(64) std::array<std::uint8_t, 64> open;  // 1: only a ray can tell
-  std::array<const std::uint32_t*, 8> triangle;   // a packet's eight numbers
+  std::array<const std::uint32_t*, 8> owner;      // of a packet's eight samples
 
   // Of the 8 samples of a packet.
   bool settled(std::size_t packet) const;
+  // The sheet's number of the triangle that a sample meets.
+  std::uint32_t triangle(std::size_t packet, std::size_t sample) const {
+    return owner[packet][sample] >> 1;
+  }
 };
+
+// Of a tile's 32 packets, in sample order.
+using PacketSet = std::uint32_t;
 
 class HitSheet {
  public:
@@ -65,6 +77,9 @@ class HitSheet {
   // (camera_rays.h) are given too, is of interest.
   void answer(int block_x, int block_y, const float* farthest, const float* cosines,
               BlockAnswers& out) const;
+  // Which of a block's eight packets show the sheet's triangles in all their samples, whatever
+  // there is besides, as long as it is no closer than that.
+  PacketSet covers(int block_x, int block_y, float closeness) const;
 
  private:
   std::size_t packet_at(int x, int y) const {
@@ -72,9 +87,13 @@ class HitSheet {
                 static_cast<std::size_t>(x));
   }
 
+  // Where a block's packets begin.
+  std::array<std::size_t, 8> packets_of(int block_x, int block_y) const;
+
   int packets_x_ = 0;
   // A sample each, packets row by row: closeness of the foremost triangle that it is inside of, of
-  // the foremost other one that it touches, and the number of the first.
+  // the foremost other one that it touches, both at most, and of the first twice its number, and 1
+  // where that one is fine.
   std::vector<float> closest_, other_;
   std::vector<std::uint32_t> owner_;
   // A packet each: what is less close is clearly behind all its samples' foremost triangles, and

@@ -10,7 +10,6 @@
 namespace probe::render {
 namespace {
 
-
 constexpr float kEmbreeDoubt = static_cast<float>(kPlaceDoubt);
 // Eight roundings of 6e-8 in the projection, twice.
 constexpr float kProjectionDoubt = 1e-6f;
@@ -24,7 +23,6 @@ constexpr float kThinRoom = 16.0f;
 constexpr std::size_t kTrianglesForPacket = 5;
 
 enum Kind : std::int32_t { kUnseen, kDrawn, kDoubtful };
-
 
 // The packets that hold samples from `low` to `high` pixels, of a side that ends at `last`.
 struct Span {
@@ -91,6 +89,9 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     const float wrong = room * (std::abs(wx) + std::abs(wy)) + limits.distance * closest * closest;
     const std::int32_t solid =
         is(wrong < kDepthDoubt * farthest) & is(wrong < limits.depth * farthest * farthest);
+    // Slopes of a thin one are lost in rounding.
+    const float rounded = kProjectionDoubt * closest * longest * longest / size;
+    const std::int32_t fine = is(wrong + rounded < kFineDoubt * farthest);
 
     out.a[0][i] = a0;
     out.a[1][i] = a1;
@@ -104,7 +105,7 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     out.touch[0][i] = room * side0;
     out.touch[1][i] = room * side1;
     out.touch[2][i] = room * side2;
-    out.w[i] = solid != 0 ? w : w + wrong;
+    out.w[i] = w + wrong;
     out.wx[i] = wx;
     out.wy[i] = wy;
     out.left[i] = across.first;
@@ -112,6 +113,7 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     out.columns[i] = across.count;
     out.rows[i] = down.count;
     out.solid[i] = solid;
+    out.fine[i] = fine;
 
     const std::int32_t untrusted = is(nearest_z < 2 * kNearest) | is(left < -limits.widest) |
                                    is(right > limits.widest) | is(top < -limits.widest) |
@@ -179,6 +181,7 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
   limits_.max_x = static_cast<float>(rays.width - 1);
   limits_.max_y = static_cast<float>(rays.height - 1);
   limits_.depth = kDistanceDoubt * rays.nearest_depth / kNearest;
+  cones_ = ConeView(camera);
   sheet_.resize(rays.tiles_x, rays.tiles_y);
   for (int y = 0; y < marks.blocks_y(); ++y) {
     for (int x = 0; x < marks.blocks_x(); ++x) {
@@ -194,7 +197,7 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
     for (const MeshGeometry::Part& part : instance.geometry->parts) {
       part_.project(part, projection);
       limit(instance, part, projection, camera);
-      draw(part, number, marks, instance_bit(turn.instance));
+      draw(instance, part, number, marks, instance_bit(turn.instance));
       number += static_cast<std::uint32_t>(part.triangles.size());
     }
   }
@@ -219,8 +222,8 @@ bool KnownHits::is_worth_it(const BlockMarks& marks) {
   return kTrianglesForPacket * packets > triangles;
 }
 
-void KnownHits::draw(const MeshGeometry::Part& part, std::uint32_t number, const BlockMarks& marks,
-                     InstanceSet bit) {
+void KnownHits::draw(const Instance& instance, const MeshGeometry::Part& part, std::uint32_t number,
+                     const BlockMarks& marks, InstanceSet bit) {
   std::array<std::int32_t, TriangleBatch::kSize> kind;
   TriangleBatch& batch = *batch_;
   const std::size_t all = part.triangles.size();
@@ -232,7 +235,8 @@ void KnownHits::draw(const MeshGeometry::Part& part, std::uint32_t number, const
     for (std::size_t i = 0; i < count; ++i) {
       if (kind[i] == kUnseen) continue;
       if (kind[i] == kDoubtful) {
-        add_doubtful(part, 3 * (first + i));
+        add_doubtful(instance, part, 3 * (first + i),
+                     number + static_cast<std::uint32_t>(first + i), marks, bit);
         continue;
       }
       batch.triangle[i] = number + static_cast<std::uint32_t>(first + i);
@@ -247,8 +251,47 @@ void KnownHits::draw(const MeshGeometry::Part& part, std::uint32_t number, const
   }
 }
 
-// One that is near, far out or thin: a ray has to tell wherever it may be.
-void KnownHits::add_doubtful(const MeshGeometry::Part& part, std::size_t index) {
+// One that is near or far out, block by block. False if it is too thin for that.
+bool KnownHits::add_cone(const Instance& instance, const MeshGeometry::Part& part,
+                         std::size_t index, const PixelBounds& bounds, std::uint32_t number,
+                         const BlockMarks& marks, InstanceSet bit) {
+  const Vec3 offset = instance.exact_translation - cones_.eye;
+  Vec3 corners[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t v = part.indices[index + k];
+    corners[k] = instance.exact_rotation * Vec3(part.x[v], part.y[v], part.z[v]) + offset;
+  }
+  const double doubt = kPlaceDoubt * (instance.exact_translation.norm() + cones_.eye.norm() +
+                                      2.0 * static_cast<double>(part.reach));
+  ConeTriangle cone;
+  if (!ConeTriangle::make(corners, doubt, cones_, cone)) return true;
+  if (cone.thin) return false;
+  const auto block = [](float at, float last) {
+    return static_cast<int>(least(greatest(at, 0.0f), last)) / kBlockSide;
+  };
+  const int left = block(bounds.min_x - kConeRoom, limits_.max_x),
+            right = block(bounds.max_x + kConeRoom, limits_.max_x),
+            top = block(bounds.min_y - kConeRoom, limits_.max_y),
+            bottom = block(bounds.max_y + kConeRoom, limits_.max_y);
+  for (int y = top; y <= bottom; ++y) {
+    for (int x = left; x <= right; ++x) {
+      if ((marks.touching(x, y) & bit) == 0) continue;
+      const float x0 = static_cast<float>(kBlockSide * x) + 0.5f,
+                  y0 = static_cast<float>(kBlockSide * y) + 0.5f;
+      const PixelRectangle samples{x0, x0 + kBlockSide - 1, y0, y0 + kBlockSide - 1};
+      if (!cone.may_meet(samples)) continue;
+      if (doubtful_->count == TriangleBatch::kSize) flush_doubtful();
+      cone.put(samples, {2 * x, 4 * y, kBlockSide / 4, kBlockSide / 2}, cones_, number, *doubtful_);
+    }
+  }
+  return true;
+}
+
+// One that is near, far out or thin: a ray has to tell wherever it may be, but for what its cone
+// tells.
+void KnownHits::add_doubtful(const Instance& instance, const MeshGeometry::Part& part,
+                             std::size_t index, std::uint32_t number, const BlockMarks& marks,
+                             InstanceSet bit) {
   PixelBounds bounds;
   if (!part_.bounds(part, index, limits_.nearest, bounds)) return;
   const std::uint32_t* v = part.indices.data() + index;
@@ -258,6 +301,7 @@ void KnownHits::add_doubtful(const MeshGeometry::Part& part, std::size_t index) 
   const bool near = least(depth[v[0]], depth[v[1]], depth[v[2]]) < 2 * kNearest ||
                     bounds.min_x < -limits_.widest || bounds.max_x > limits_.widest ||
                     bounds.min_y < -limits_.widest || bounds.max_y > limits_.widest;
+  if (near && add_cone(instance, part, index, bounds, number, marks, bit)) return;
   const float beyond = near ? 1 : kThinRoom;
   const Span across =
       packets_between(bounds.min_x - beyond, bounds.max_x + beyond, limits_.max_x, 4);
@@ -272,7 +316,7 @@ void KnownHits::add_doubtful(const MeshGeometry::Part& part, std::size_t index) 
   out.top[i] = down.first;
   out.columns[i] = across.count;
   out.rows[i] = down.count;
-  out.solid[i] = 0;
+  out.solid[i] = out.fine[i] = 0;
   out.triangle[i] = 0;
   out.w[i] = kInfinite;
   out.wx[i] = out.wy[i] = 0;

@@ -8,6 +8,7 @@
 
 #include "runtime/render/block_marks.h"
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/cone_triangle.h"
 #include "runtime/render/hit_sheet.h"
 #include "runtime/render/projected_part.h"
 #include "runtime/render/top_scene.h"
@@ -40,12 +41,17 @@ class KnownHits {
   bool is_worth_it(const BlockMarks& marks);
   void limit(const Instance& instance, const MeshGeometry::Part& part, const Projection& projection,
              const Camera& camera);
-  void draw(const MeshGeometry::Part& part, std::uint32_t number, const BlockMarks& marks,
-            InstanceSet bit);
-  void add_doubtful(const MeshGeometry::Part& part, std::size_t index);
+  void draw(const Instance& instance, const MeshGeometry::Part& part, std::uint32_t number,
+            const BlockMarks& marks, InstanceSet bit);
+  void add_doubtful(const Instance& instance, const MeshGeometry::Part& part, std::size_t index,
+                    std::uint32_t number, const BlockMarks& marks, InstanceSet bit);
+  bool add_cone(const Instance& instance, const MeshGeometry::Part& part, std::size_t index,
+                const PixelBounds& bounds, std::uint32_t number, const BlockMarks& marks,
+                InstanceSet bit);
   void flush_doubtful();
 
   TriangleLimits limits_{};
+  ConeView cones_;
   struct Range {
     InstanceSet bit;
     std::size_t count;  // triangles

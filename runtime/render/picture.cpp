@@ -65,7 +65,7 @@ void Picture::resize(int new_width, int new_height) {
 
 void show_hits(const TileHits& hits, const TopScene& scene, const CameraRays& rays, int tile,
                const ShadeOutput* colors, Picture& picture) {
-  const float* cosine = rays.cosine.data() + static_cast<std::size_t>(tile) * kTileSamples;
+  const float* cosine = rays.cosine.data() + rays.base(tile);
   const int left = tile % rays.tiles_x * kTileSide, top = tile / rays.tiles_x * kTileSide;
   const auto count = static_cast<std::size_t>(hits.count);
   alignas(64) std::array<PackedRgb, kTileSamples> rgb;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kMostSubpixels = 134217728.0f;  // 2^27
 static_assert(MeshClusters::kMostTriangles <= SmallTriangles::kMost);
-constexpr float kBehind = -1;  // the nearness of what has to be cut
+constexpr float kBehindEye = -1;  // the nearness of what has to be cut
 
 inline std::int32_t subpixel(float pixels) {
   const float at = pixels * static_cast<float>(kSubpixels);
@@ -62,7 +62,7 @@ PROBE_CLONES void view_places(const float* __restrict x, const float* __restrict
     const float near = 1.0f / from;
     across[i] = subpixel(p.cx + p.fx * right * near);
     down[i] = subpixel(p.cy + p.fy * low * near);
-    nearness[i] = deep < PlacedMeshes::kNearestDepth ? kBehind : near;
+    nearness[i] = deep < PlacedMeshes::kNearestDepth ? kBehindEye : near;
     nearest = greatest(nearest, std::bit_cast<std::int32_t>(near));
     x0 = least(x0, across[i]);
     x1 = greatest(x1, across[i]);
@@ -390,7 +390,7 @@ void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& plac
       int behind = 0, under = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint16_t at = all.corner[k][i];
-        behind += seen.nearness[at] == kBehind ? 1 : 0;
+        behind += seen.nearness[at] == kBehindEye ? 1 : 0;
         under += into_ && above[at] < 0 ? 1 : 0;
       }
       if (behind == 3 || under == 3) continue;

@@ -3,6 +3,7 @@
 #include "runtime/render/renderer.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "runtime/render/blend.h"
 #include "runtime/render/block_marks.h"
@@ -126,7 +127,7 @@ class EmbreeRenderer final : public Renderer {
   // The same through a camera that moves, where a pixel is one sample and nothing casts: tile by
   // tile, without shading what is hidden and without keeping what the next frame cannot use.
   Result<FrameView> glance(const Camera& camera, std::span<const Pose> poses) {
-    PROBE_TRY(make_camera_rays(camera, moving_.rays));
+    PROBE_TRY(tile_rays_.look(camera, moving_.rays));
     PROBE_ASSIGN(moving_.lights, make_lights(spec_.lights));
     const CameraRays& rays = moving_.rays;
     const FlushDenormals guard;
@@ -145,13 +146,15 @@ class EmbreeRenderer final : public Renderer {
   }
 
   void glance_at(int tile, const BlockSets& blocks, const KnownTriangles& known) {
+    tile_rays_.make(tile, moving_.rays);
     const CameraRays& rays = moving_.rays;
     std::array<float, kTileSamples> farthest;
     farthest.fill(kFarthest);
     const int tile_x = tile % rays.tiles_x, tile_y = tile / rays.tiles_x;
     const FilledBlocks filled = fills_.of_tile(tile_x, tile_y);
+    const PacketSet hidden = hidden_by(known, blocks, tile_x, tile_y);
     still_tracer_->trace(scene_->top, moving_.origins, rays, tile, kAllBlocks, farthest.data(),
-                         filled, fills_.draw_rest(tile_x, tile_y, filled));
+                         filled, fills_.draw_rest(tile_x, tile_y, filled, hidden), hidden);
     const TileHits& still = still_tracer_->hits();
     if (!is_empty(blocks)) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(still.count); ++i) {
@@ -173,6 +176,21 @@ class EmbreeRenderer final : public Renderer {
     still_tracer_->shade(scene_->top, rays, tile, moving_.lights,
                          {statics, statics, spec_.occlusion_rays});
     show_hits(still, scene_->top, rays, tile, &still_tracer_->colors(), frame_);
+  }
+
+  // Packets of a tile that show nothing but what moves, whatever stands still there.
+  PacketSet hidden_by(const KnownTriangles& known, const BlockSets& blocks, int tile_x,
+                      int tile_y) const {
+    if (known.sheet == nullptr || is_empty(blocks)) return 0;
+    const float closest = fills_.closest(tile_x, tile_y);
+    if (closest == std::numeric_limits<float>::infinity()) return 0;
+    PacketSet hidden = 0;
+    for (int block = 0; block < 4; ++block) {
+      if (blocks[static_cast<std::size_t>(block)] == 0) continue;
+      hidden |= known.sheet->covers(2 * tile_x + block % 2, 2 * tile_y + block / 2, closest)
+                << (8 * block);
+    }
+    return hidden;
   }
 
   // Traces the marked blocks and writes what moving things show there.
@@ -209,6 +227,7 @@ class EmbreeRenderer final : public Renderer {
   std::shared_ptr<const StaticScene> scene_;
   std::shared_ptr<const StaticPicture> still_;  // of the spec's camera; from the first render() on
   StaticPicture moving_;                        // of the last camera that moved
+  TileRays tile_rays_;
   TopScene dynamics_;
   RayOrigins origins_;  // of the dynamics, from the last camera
   BlockMarks marks_,

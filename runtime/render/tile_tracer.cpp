@@ -74,9 +74,11 @@ PROBE_CLONES void load_rays(const float* __restrict dx, const float* __restrict 
 }  // namespace
 
 // Every lane's numbers are written, and the place moves on only behind a hit: no branch to guess.
-void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
+void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, int tile,
                                const BlockSets& blocks, const float* farthest,
-                               const FilledBlocks& filled, const KnownTriangles& known) {
+                               const FilledBlocks& filled, const KnownTriangles& known,
+                               PacketSet hidden) {
+  const std::size_t base = rays.base(tile);
   constexpr std::size_t n = 8;
   alignas(32) static constexpr int kAll[n] = {-1, -1, -1, -1, -1, -1, -1, -1};
   RTCIntersectContext context;
@@ -96,13 +98,14 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
   BlockAnswers answers;
   for (std::size_t block = 0; block < 4; ++block) {
     if (blocks[block] == 0) continue;
+    const PacketSet left_out = hidden >> (8 * block) & 0xFF;
+    if (left_out == 0xFF) continue;
     if (filled[block].filled) {
-      fill_block(block, filled[block], count);
-      count += 64;
+      count = fill_block(block, filled[block], left_out, count);
       continue;
     }
     if (known.sheet != nullptr) {
-      const int tile = static_cast<int>(base / kTileSamples), part = static_cast<int>(block);
+      const int part = static_cast<int>(block);
       known.sheet->answer(2 * (tile % rays.tiles_x - known.tile_x) + part % 2,
                           2 * (tile / rays.tiles_x - known.tile_y) + part / 2,
                           farthest + 64 * block, rays.cosine.data() + base + 64 * block, answers);
@@ -110,6 +113,7 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, std::size
     for (std::size_t first = 64 * block; first < 64 * (block + 1); first += n) {
       const std::size_t from = base + first;
       const std::size_t p = (first - 64 * block) / n;
+      if ((left_out >> p & 1) != 0) continue;
       if (known.sheet != nullptr && answers.settled(p)) {
         count = take_known(known.names, answers, block, p, count);
         continue;
@@ -137,7 +141,7 @@ std::size_t TileTracer::take_known(const TriangleName* names, const BlockAnswers
                                    std::size_t block, std::size_t packet, std::size_t count) {
   for (std::size_t k = 0; k < 8; ++k) {
     if (answers.hit[8 * packet + k] == 0) continue;
-    const TriangleName& name = names[answers.triangle[packet][k]];
+    const TriangleName& name = names[answers.triangle(packet, k)];
     hits_.sample[count] = static_cast<std::uint8_t>(64 * block + 8 * packet + k);
     hits_.instance[count] = name.instance;
     hits_.part[count] = name.part;
@@ -149,25 +153,32 @@ std::size_t TileTracer::take_known(const TriangleName* names, const BlockAnswers
   return count;
 }
 
-void TileTracer::fill_block(std::size_t block, const FilledBlock& with, std::size_t count) {
-  for (std::size_t k = 0; k < 64; ++k) {
-    hits_.sample[count + k] = static_cast<std::uint8_t>(64 * block + k);
+// The same of a whole block, but for packets that are left out.
+std::size_t TileTracer::fill_block(std::size_t block, const FilledBlock& with, PacketSet left_out,
+                                   std::size_t count) {
+  const std::size_t begin = count;
+  for (std::size_t packet = 0; packet < 8; ++packet) {
+    if ((left_out >> packet & 1) != 0) continue;
+    for (std::size_t k = 0; k < 8; ++k)
+      hits_.sample[count + k] = static_cast<std::uint8_t>(64 * block + 8 * packet + k);
+    count += 8;
   }
-  std::fill_n(&hits_.instance[count], 64, with.name.instance);
-  std::fill_n(&hits_.part[count], 64, with.name.part);
-  std::fill_n(&hits_.primitive[count], 64, with.name.primitive);
-  std::fill_n(&hits_.t[count], 64, kUnknownDistance);
-  std::fill_n(&hits_.u[count], 64, 0.0f);
-  std::fill_n(&hits_.v[count], 64, 0.0f);
+  const std::size_t all = count - begin;
+  std::fill_n(&hits_.instance[begin], all, with.name.instance);
+  std::fill_n(&hits_.part[begin], all, with.name.part);
+  std::fill_n(&hits_.primitive[begin], all, with.name.primitive);
+  std::fill_n(&hits_.t[begin], all, kUnknownDistance);
+  std::fill_n(&hits_.u[begin], all, 0.0f);
+  std::fill_n(&hits_.v[begin], all, 0.0f);
+  return count;
 }
 
 void TileTracer::trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                        int tile, const BlockSets& blocks, const float* farthest,
-                       const FilledBlocks& filled, const KnownTriangles& known) {
-  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
-  trace_packets(scene.scene(), rays, base, blocks, farthest, filled, known);
+                       const FilledBlocks& filled, const KnownTriangles& known, PacketSet hidden) {
+  trace_packets(scene.scene(), rays, tile, blocks, farthest, filled, known, hidden);
   find_triangles(scene);
-  refine_hits(scene, origins, rays, base);
+  refine_hits(scene, origins, rays, rays.base(tile));
 }
 
 void TileTracer::refine_hits(const TopScene& scene, const RayOrigins& origins,
@@ -267,7 +278,7 @@ void TileTracer::take(const TopScene& scene, const StoredHits& stored, int tile,
 }
 
 void TileTracer::gather(const TopScene& scene, const CameraRays& rays, int tile, bool points) {
-  const std::size_t base = static_cast<std::size_t>(tile) * kTileSamples;
+  const std::size_t base = rays.base(tile);
   const auto count = static_cast<std::size_t>(hits_.count);
   textured_.count = 0;
   for (std::size_t first = 0, n = 0; first < count; first += n) {

@@ -73,10 +73,10 @@ class TileTracer {
   // Traces the blocks (b: samples 64 b .. 64 b + 63) against their instances, up to
   // `farthest[sample]`, then recomputes t, u and v of every hit in our own code, so that only the
   // choice of the triangle is Embree's. Blocks in `filled` and packets of which `known` knows all
-  // samples are not traced.
+  // samples are not traced; of packets in `hidden` nobody asks.
   void trace(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays, int tile,
              const BlockSets& blocks, const float* farthest, const FilledBlocks& filled = {},
-             const KnownTriangles& known = {});
+             const KnownTriangles& known = {}, PacketSet hidden = 0);
   // Leaves out the samples in `hidden`.
   void drop(const std::array<bool, kTileSamples>& hidden);
   // Takes hits of that tile and blocks which were traced before, leaving out samples in `hidden`.
@@ -97,12 +97,13 @@ class TileTracer {
  private:
   void find_triangles(const TopScene& scene);
   void read_textures();
-  void trace_packets(RTCScene scene, const CameraRays& rays, std::size_t base,
-                     const BlockSets& blocks, const float* farthest, const FilledBlocks& filled,
-                     const KnownTriangles& known);
+  void trace_packets(RTCScene scene, const CameraRays& rays, int tile, const BlockSets& blocks,
+                     const float* farthest, const FilledBlocks& filled, const KnownTriangles& known,
+                     PacketSet hidden);
   std::size_t take_known(const TriangleName* names, const BlockAnswers& answers, std::size_t block,
                          std::size_t packet, std::size_t count);
-  void fill_block(std::size_t block, const FilledBlock& with, std::size_t count);
+  std::size_t fill_block(std::size_t block, const FilledBlock& with, PacketSet left_out,
+                         std::size_t count);
   void refine_hits(const TopScene& scene, const RayOrigins& origins, const CameraRays& rays,
                    std::size_t base);
   RunRays run_rays(const CameraRays& rays, std::size_t base, std::size_t first, std::size_t count);

@@ -197,9 +197,29 @@ TEST_CASE("most of a plain thing is known without rays, and nothing of one drawn
 
 TEST_CASE("what is too near for a ray or seen from its edge is left to rays") {
   CHECK(shares(square(0.2), at(0.015, 0, 0)).settled == 0);
-  CHECK(shares(square(0.2), at(9.99, 0, 0)).hits == 0);
+  CHECK(shares(square(0.2), at(9.998, 0, 0)).hits == 0);
   const Pose edge{Vec3(1, 0, 0), Quat(std::sqrt(0.5), 0, 0, std::sqrt(0.5))};
   CHECK(shares(square(0.2), edge).hits == 0);
+}
+
+TEST_CASE("a board half a millimetre before another is known, one that touches it is not") {
+  const auto boards = [](double gap) {
+    scene::MeshPart part;
+    add_triangle(part, {Vec3(0, -0.1, -0.1), Vec3(0, 0.1, -0.1), Vec3(0, 0, 0.1)});
+    add_triangle(part, {Vec3(gap, -0.1, -0.1), Vec3(gap, 0.1, -0.1), Vec3(gap, 0, 0.1)});
+    return shares(colored(part, 0.5f), at(0.35, 0, 0));
+  };
+  CHECK(boards(5e-4).settled > 0.8 * boards(5e-4).packets);
+  CHECK(boards(1e-5).settled < 0.6 * boards(1e-5).packets);
+}
+
+TEST_CASE("what reaches behind the camera is known where it lies before it") {
+  // A floor from behind the camera to 4 m before it, 0.2 m below.
+  const scene::MeshPart floor = quad_part(Vec3(1.5, 0, -0.2), Vec3(0, -5, 0), Vec3(2.5, 0, 0));
+  const Shares seen = shares(colored(floor, 0.5f), at(0, 0, 0));
+  CHECK(seen.packets > 0);
+  CHECK(seen.settled > 0);
+  CHECK(seen.hits > 500);
 }
 
 TEST_CASE("many small triangles in few pixels are left to rays") {

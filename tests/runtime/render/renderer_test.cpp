@@ -404,7 +404,8 @@ TEST_CASE("two things of one mesh that meet in the picture lie where each of the
   spec.camera = plain_camera(128, 128);
   spec.dynamics = {visual(shared, 0, "front"), visual(shared, 1, "behind")};
   const auto renderer = make(spec);
-  // Right of the front one's upper right triangle the same of the other: their hits follow each other.
+  // Right of the front one's upper right triangle the same of the other: their hits follow each
+  // other.
   const std::vector<Pose> poses = {at(1.0, 0, 0), at(1.1, -0.15, 0)};
   const auto misplaced = [](const FrameView& frame) {
     int count = 0;
