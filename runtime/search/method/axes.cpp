@@ -150,21 +150,35 @@ struct Test {
   Together::Best best;
 };
 
-// Independence of `a` and `b` over the trials `among`, by permutation of b.
-Test independence(const Parts& a, const Parts& b, const std::vector<std::size_t>& among,
-                  int permutations, Draws draws) {
+// Independence of `a` and `b` over the trials `among`, by permutation of b among trials that have
+// the same parts of all of `within`.
+Test independence(const Parts& a, const Parts& b, std::vector<std::size_t> among,
+                  const std::vector<const Parts*>& within, int permutations, Draws draws) {
+  const auto is_before = [&](std::size_t i, std::size_t j) {
+    for (const Parts* axis : within) {
+      if (axis->of[i] != axis->of[j]) return axis->of[i] < axis->of[j];
+    }
+    return false;
+  };
+  std::vector<std::size_t> ends;  // of each run of trials with the same parts
+  if (!within.empty()) std::stable_sort(among.begin(), among.end(), is_before);
   std::vector<std::uint8_t> of_a, of_b;
-  for (const std::size_t i : among) {
-    of_a.push_back(a.of[i]);
-    of_b.push_back(b.of[i]);
+  for (std::size_t i = 0; i < among.size(); ++i) {
+    of_a.push_back(a.of[among[i]]);
+    of_b.push_back(b.of[among[i]]);
+    if (i + 1 == among.size() || is_before(among[i], among[i + 1])) ends.push_back(i + 1);
   }
   Together together(a, b, of_a, of_b);
   Test test{.p = 1, .best = together.best(of_a, of_b)};
   if (test.best.square == 0) return test;
   int exceedances = 0;
   for (int done = 1; done <= permutations; ++done) {
-    for (std::size_t i = of_b.size(); i > 1; --i) {
-      std::swap(of_b[i - 1], of_b[draws.below(static_cast<std::uint32_t>(i))]);
+    std::size_t first = 0;
+    for (const std::size_t end : ends) {
+      for (std::size_t i = end - first; i > 1; --i) {
+        std::swap(of_b[first + i - 1], of_b[first + draws.below(static_cast<std::uint32_t>(i))]);
+      }
+      first = end;
     }
     exceedances += together.best(of_a, of_b).square >= test.best.square * (1 - 1e-9) ? 1 : 0;
     if (exceedances == kEnough) {
@@ -317,9 +331,28 @@ AxesFinding Axes::finding() const {
   for (std::size_t a = 0; a < space_.size(); ++a) parts.push_back(parts_of(space_[a], counted, a));
   Parts outcome{.count = 2, .of = failed, .sides = {{}}};
 
+  // Points that were left out may tie axes to one another. What such an axis does is then looked at
+  // where the axes that it is tied to are in one part.
+  std::vector<std::vector<bool>> is_tied(space_.size(), std::vector<bool>(space_.size()));
+  for (std::size_t a = 0; a < space_.size() && found.left_out > 0; ++a) {
+    for (std::size_t b = a + 1; b < space_.size(); ++b) {
+      const std::string name = "tied " + std::to_string(a) + " " + std::to_string(b);
+      const Test test = independence(parts[a], parts[b], all, {}, options_.permutations,
+                                     Draws(options_.seed, name));
+      is_tied[a][b] = is_tied[b][a] = test.p <= kTied;
+    }
+  }
+  const auto tied_to = [&](std::size_t a, std::size_t b) {
+    std::vector<const Parts*> tied;
+    for (std::size_t c = 0; c < space_.size(); ++c) {
+      if (c != a && c != b && (is_tied[a][c] || is_tied[b][c])) tied.push_back(&parts[c]);
+    }
+    return tied;
+  };
+
   std::vector<double> p;
   for (std::size_t a = 0; a < space_.size(); ++a) {
-    const Test test = independence(parts[a], outcome, all, options_.permutations,
+    const Test test = independence(parts[a], outcome, all, tied_to(a, a), options_.permutations,
                                    Draws(options_.seed, "axis " + std::to_string(a)));
     AxisEffect effect;
     if (!parts[a].sides.empty()) {
@@ -344,8 +377,8 @@ AxesFinding Axes::finding() const {
   for (std::size_t a = 0; a < space_.size(); ++a) {
     for (std::size_t b = a + 1; b < space_.size(); ++b) {
       const std::string name = "pair " + std::to_string(a) + " " + std::to_string(b);
-      const Test test = independence(parts[a], parts[b], successes, options_.permutations,
-                                     Draws(options_.seed, name));
+      const Test test = independence(parts[a], parts[b], successes, tied_to(a, b),
+                                     options_.permutations, Draws(options_.seed, name));
       PairEffect effect;
       effect.a = a;
       effect.b = b;
@@ -375,11 +408,7 @@ AxesFinding Axes::finding() const {
         const bool is_diagonal = worst == 0 || worst == 3;
         effect.synergy = test.best.is_less == is_diagonal;
       }
-      if (found.left_out > 0) {
-        effect.tested = independence(parts[a], parts[b], all, options_.permutations,
-                                     Draws(options_.seed, name + " left out"))
-                            .p > kTied;
-      }
+      effect.tested = !is_tied[a][b];
       p.push_back(effect.tested ? test.p : 1);
       found.pairs.push_back(effect);
     }

@@ -82,6 +82,8 @@ struct AxesFinding {
 // other pairs interact. That is tested by permutation, exact at every size and under perfect
 // separation: the largest chi-square over all pairs of cuts, sequential Monte Carlo p values (Besag
 // and Clifford 1991, Biometrika 78:301). Of main effects the same, of an axis and the outcome.
+// Points that are left out may tie axes to one another; then permutations stay within the parts of
+// those that an axis is tied to, and shares are only of the points that count.
 class Axes {
  public:
   Axes(Space space, const AxesOptions& options);

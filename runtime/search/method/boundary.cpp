@@ -187,6 +187,7 @@ struct Boundary::State {
       return end(BoundaryStatus::kUndecided);
     if (is_checking && checks_on()) return;
     if (checks == 0 && begins()) return;
+    if (fair_levels().size() == 1) return end(BoundaryStatus::kLeftOut);
     const int reserved = checks == 0 ? check_size() : 0;
     BoundaryStatus now = verdict();
     const bool is_spent = trials + reserved >= options.budget;

@@ -41,7 +41,7 @@ enum class BoundaryStatus : std::uint8_t {
   kFailsAtOwnValue,  // never, or too seldom, succeeds where nothing is changed
   kNotMonotone,      // success rises again further out: no single tolerance describes it
   kUndecided,        // the budget is spent
-  kLeftOut,          // the own value itself was never fair
+  kLeftOut,          // the own value itself was never fair, or nothing beyond it
 };
 
 struct BoundaryFinding {

@@ -92,6 +92,28 @@ TEST_CASE("an unfair corner is no interaction, and the pair that it ties is not 
   CHECK(found.axes[5].matters);
 }
 
+// An unfair corner of light and camera; what the light does is not said of the camera, nor an
+// interaction of light and clutter of camera and clutter.
+TEST_CASE("what an axis does is not said of one that an unfair corner ties to it") {
+  int said = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const AxesFinding found = found_of(
+        [](const Point& p) {
+          if (p[0] > 0.5 && p[1] > 0.5) return -1.0;
+          return p[0] > 0.5 && p[5] >= 3 ? 0.9 : 0.1;
+        },
+        seed, {.points = 800, .resamples = 0});
+    CHECK(found.axes[0].matters);
+    bool is_said = found.axes[1].matters;
+    for (const PairEffect& pair : found.pairs) {
+      if (pair.a == 0 && pair.b == 5) CHECK(pair.named);
+      is_said = is_said || (pair.a == 1 && pair.named);
+    }
+    said += is_said ? 1 : 0;
+  }
+  CHECK(said <= 4);
+}
+
 TEST_CASE("policies that always or never fail, few points and no points have findings") {
   for (const Failure failure : {always, never}) {
     const AxesFinding found = found_of(failure, 1);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <span>
 #include <vector>
 
 #include "runtime/search/method/monotone.h"
@@ -83,8 +84,10 @@ TEST_CASE("an unfair end is left out and counted, and the last fair level is tol
   CHECK(found.threshold < 13);
   CHECK(boundary_of({.levels = 41}, [](int level) { return level == 0 ? -1.0 : 0.0; }).status ==
         BoundaryStatus::kLeftOut);
-  CHECK(boundary_of({.levels = 41}, [](int level) { return level > 0 ? -1.0 : 0.0; }).status ==
-        BoundaryStatus::kUndecided);
+  const auto nothing =
+      boundary_of({.levels = 41}, [](int level) { return level > 0 ? -1.0 : 0.0; });
+  CHECK(nothing.status == BoundaryStatus::kLeftOut);
+  CHECK(nothing.last_level == 0);
 }
 
 TEST_CASE("a policy that succeeds again further out has no tolerance") {
@@ -120,6 +123,28 @@ TEST_CASE("a boundary that is told the same asks the same, batch by batch") {
   }
   CHECK(b.done());
   CHECK(a.finding().threshold == b.finding().threshold);
+}
+
+TEST_CASE("a boundary is resumed from what is stored, in the middle of a batch, too") {
+  const auto failure = [](int level) { return 0.2 + 0.015 * level; };
+  Boundary whole({.levels = 41, .seed = 3});
+  Draws draws(3, "policy");
+  std::vector<Outcome> stored;
+  while (!whole.done()) {
+    const std::size_t before = stored.size();
+    for (const int level : whole.ask()) {
+      stored.push_back(draws.uniform() < failure(level) ? Outcome::kFailed : Outcome::kSucceeded);
+    }
+    whole.tell(std::span(stored).subspan(before));
+  }
+  Boundary again({.levels = 41, .seed = 3});
+  const std::size_t told = resume(again, std::span(stored).first(45));
+  CHECK(told <= 45);
+  CHECK(45 - told < again.ask().size());
+  CHECK(resume(again, std::span(stored).subspan(told)) == stored.size() - told);
+  CHECK(again.done());
+  CHECK(again.finding().threshold == whole.finding().threshold);
+  CHECK(again.finding().trials == whole.finding().trials);
 }
 
 }  // namespace probe::search
