@@ -85,7 +85,7 @@ struct Boundary::State {
 
   // All fair levels of a short axis; of a long one those around the tolerance and some elsewhere.
   std::vector<int> levels_thought_of() const {
-    const std::vector<int> fair = fair_levels();
+    std::vector<int> fair = fair_levels();
     if (fair.size() <= kLevelsThoughtOf) return fair;
     const int last = last_level();
     const int low = static_cast<int>(grid.quantile(0.005, last)) - 1;

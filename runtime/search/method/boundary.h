@@ -46,8 +46,9 @@ enum class BoundaryStatus : std::uint8_t {
 
 struct BoundaryFinding {
   BoundaryStatus status = BoundaryStatus::kRunning;
-  // In levels, not whole: the median of the posterior and its 95 % interval; above last_level
-  // where success need not fall inside the space. Of kFound, kNotMonotone (what the monotone model
+  // In levels, not whole: the median of the posterior and an interval that holds the truth in 95 %
+  // of searches (98.5 % of the posterior: a search stops when that happens to be narrow). The ends
+  // are last_level at most. Of kFound, kNotMonotone (what the monotone model
   // would say, not to be believed) and kUndecided.
   double threshold = 0, low = 0, high = 0;
   double no_fall = 0;        // posterior probability that half is not reached up to last_level

@@ -281,7 +281,7 @@ struct Worst::State {
     }
     if (round < options.rounds && idle < kPatience) return ask_round();
     is_second_look = true;
-    for (const std::size_t i : best(static_cast<std::size_t>(3 * options.keep))) {
+    for (const std::size_t i : best(3 * static_cast<std::size_t>(options.keep))) {
       ask.insert(ask.end(), static_cast<std::size_t>(options.second_look), seen[i].point);
     }
     is_over = ask.empty();

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/runtime/search/method/fake_policy.h"
 
@@ -66,6 +67,30 @@ TEST_CASE("left out trials are run again, and a case that is never fair is not c
   CHECK(found.cases[1].failures.n == 20);
   CHECK(found.cases[1].confirmed);
   CHECK(found.left_out == found.cases[0].left_out + found.cases[1].left_out);
+}
+
+TEST_CASE(
+    "of five cases that fail as often as is allowed, none is confirmed in 95 % of 2,000 tests") {
+  const auto claimed = [](const ConfirmOptions& options, std::uint64_t seed) {
+    Confirm method(kOne, std::vector<Point>(5, {0.5}), options);
+    drive(
+        method, [](const Point&) { return 0.3; }, seed);
+    for (const ConfirmedCase& one : method.confirmation().cases) {
+      if (one.confirmed || one.low > 0.3) return 1;
+    }
+    return 0;
+  };
+  int stated = 0, own = 0;
+  const int searches = 1000;
+  for (std::uint64_t seed = 0; seed < searches; ++seed) {
+    stated += claimed({.rate = 0.3}, seed);
+    own += claimed({.trials = 100, .own_trials = 1000}, seed);
+  }
+  MESSAGE("confirmed wrongly, or a bound above the truth: against a stated rate "
+          << 100.0 * stated / searches << " %, against a well known own point "
+          << 100.0 * own / searches << " %, stated 5 %");
+  CHECK(stated <= 0.05 * searches);
+  CHECK(own <= 0.05 * searches);
 }
 
 }  // namespace probe::search
