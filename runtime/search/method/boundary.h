@@ -48,8 +48,8 @@ struct BoundaryFinding {
   BoundaryStatus status = BoundaryStatus::kRunning;
   // In levels, not whole: the median of the posterior and an interval that holds the truth in 95 %
   // of searches (98.5 % of the posterior: a search stops when that happens to be narrow). The ends
-  // are last_level at most. Of kFound, kNotMonotone (what the monotone model
-  // would say, not to be believed) and kUndecided.
+  // are last_level at most. Of kFound, kUndecided and kNotMonotone (what the monotone model would
+  // say, not to be believed).
   double threshold = 0, low = 0, high = 0;
   double no_fall = 0;        // posterior probability that half is not reached up to last_level
   stats::Count own;          // successes at level 0

@@ -23,11 +23,11 @@ struct ConfirmOptions {
   double error = 0.05;  // that any case is called confirmed, or its bound too high, wrongly
   // Cases must fail more often than this. Not stated: more often than the own point does, by an
   // exact upper bound of that from fresh trials, which has a fifth of the error.
-  std::optional<double> rate;
+  std::optional<double> rate = std::nullopt;
 };
 
 struct ConfirmedCase {
-  stats::Count failures;  // of fresh trials
+  stats::Count failures = {};  // of fresh trials
   int left_out = 0;
   double low = 0;  // one-sided lower bound of the failure rate; those of all cases hold together
   double p = 1;    // Holm's, against the rate; 1 where every trial was left out
@@ -61,7 +61,7 @@ class Confirm {
   struct Tried {
     Point point;
     int wanted = 0, asked = 0, left_out = 0;
-    stats::Count failures;
+    stats::Count failures = {};
   };
   void next();
 

@@ -36,7 +36,7 @@ enum class Verdict : std::uint8_t { kFails, kPasses, kUnclear, kLeftOut };
 
 struct SetTried {
   AxisSet set = 0;
-  stats::Count failures;
+  stats::Count failures = {};
   int left_out = 0;
   Verdict verdict = Verdict::kUnclear;
   double log_ratio = 0;  // of the likelihoods at `fails` and at `passes`

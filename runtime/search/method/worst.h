@@ -33,8 +33,8 @@ struct WorstOptions {
 
 struct Candidate {
   Point point;
-  stats::Count failures;  // of the search, so too many: the best of many is lucky
-  double distance = 0;    // from the own point
+  stats::Count failures = {};  // of the search, so too many: the best of many is lucky
+  double distance = 0;         // from the own point
 };
 
 // Rubinstein and Kroese 2004, The Cross-Entropy Method, algorithm 4.1 with smoothing (5.2). A point
