@@ -21,10 +21,14 @@ constexpr double kReach = 0.12;
 constexpr double kAlike = 0.1;
 // Rounds in which the elite came no nearer, by more than kNearer, that end the search.
 constexpr int kPatience = 4;
-constexpr double kNearer = 0.02;
+constexpr double kNearer = 0.01;
 // One in so many points of a round is drawn as the first round was: a weak spot found first does
 // not hide a nearer one.
 constexpr int kShareElsewhere = 5;
+// One in so many is one of the elite with a smaller change.
+constexpr int kShareNearer = 3;
+// How much less is learnt from an elite that does not fail: it may be luck.
+constexpr double kFromLuck = 0.3;
 // Truncated to 0..1 this is nearly uniform.
 constexpr double kFirstSpread = 1;
 
@@ -71,6 +75,7 @@ struct Worst::State {
   int round = 0;  // that are told
   int idle = 0;   // rounds in a row whose elite came no nearer
   double nearest = 1e300;
+  bool is_any_broken = false;  // in the elite
   bool is_second_look = false, is_over = false;
   int trials = 0, left_out = 0;
 
@@ -118,6 +123,19 @@ struct Worst::State {
     return point;
   }
 
+  // Every second time an end of the axis: what breaks a policy often does so from somewhere on.
+  static double changed_anywhere(const Axis& axis, Draws& draws) {
+    const double last = axis.kind == AxisKind::kContinuous ? 1 : axis.size - 1;
+    if (axis.kind != AxisKind::kChoice && draws.uniform() < 0.5) {
+      if (axis.own == 0) return last;
+      if (axis.own == last) return 0;
+      return draws.uniform() < 0.5 ? 0 : last;
+    }
+    if (axis.kind == AxisKind::kContinuous) return draws.uniform();
+    const auto other = static_cast<double>(draws.below(static_cast<std::uint32_t>(axis.size - 1)));
+    return other < axis.own ? other : other + 1;
+  }
+
   // Few axes changed more often than many, each anywhere but where it is.
   Point draw_anywhere(Draws& draws) const {
     std::vector<std::size_t> axes;
@@ -132,25 +150,46 @@ struct Worst::State {
     for (std::size_t i = 0; i < changed; ++i) {
       const std::size_t left = axes.size() - i;
       std::swap(axes[i], axes[i + draws.below(static_cast<std::uint32_t>(left))]);
-      const Axis& axis = space[axes[i]];
-      double& x = point[axes[i]];
-      if (axis.kind == AxisKind::kContinuous) {
-        x = draws.uniform();
-        continue;
-      }
-      const auto other =
-          static_cast<double>(draws.below(static_cast<std::uint32_t>(axis.size - 1)));
-      x = other < axis.own ? other : other + 1;
+      point[axes[i]] = changed_anywhere(space[axes[i]], draws);
+    }
+    return point;
+  }
+
+  // One of the elite with one of its changes put back, or made smaller: laws that know an axis at a
+  // time cannot tell what two weak spots need.
+  Point draw_nearer(Draws& draws) const {
+    Point point = seen[elite[draws.below(static_cast<std::uint32_t>(elite.size()))]].point;
+    std::vector<std::size_t> changed;
+    for (std::size_t a = 0; a < space.size(); ++a) {
+      if (point[a] != space[a].own) changed.push_back(a);
+    }
+    const std::size_t a = changed[draws.below(static_cast<std::uint32_t>(changed.size()))];
+    const double u = draws.uniform();
+    const bool is_put_back = changed.size() > 1 && draws.uniform() < 0.5;
+    const double shorter = space[a].own + u * (point[a] - space[a].own);
+    if (is_put_back) {
+      point[a] = space[a].own;
+    } else if (space[a].kind == AxisKind::kContinuous) {
+      point[a] = shorter;
+    } else if (space[a].kind == AxisKind::kCount) {
+      // Not to the own value itself, which would be put back.
+      const double step = point[a] > space[a].own ? 1 : -1;
+      point[a] = std::round(shorter) == space[a].own ? space[a].own + step : std::round(shorter);
     }
     return point;
   }
 
   void ask_round() {
     Draws draws(options.seed, "worst round " + std::to_string(round));
-    const int elsewhere = round == 0 ? options.points : options.points / kShareElsewhere;
+    const int elsewhere = round == 0      ? options.points
+                          : is_any_broken ? options.points / kShareElsewhere
+                                          : options.points / 2;
+    const int nearer = is_any_broken ? elsewhere + options.points / kShareNearer : elsewhere;
     for (int i = 0; i < options.points; ++i) {
       ask.insert(ask.end(), static_cast<std::size_t>(options.repeats),
-                 i < elsewhere ? draw_anywhere(draws) : draw(draws));
+                 i < elsewhere ? draw_anywhere(draws)
+                 : i < nearer  ? draw_nearer(draws)
+                               : draw(draws));
     }
   }
 
@@ -203,7 +242,9 @@ struct Worst::State {
 
   void learn() {
     if (elite.empty()) return;
-    const double fresh = options.smoothing, floor = options.spread_floor;
+    is_any_broken = is_broken(seen[elite.front()]);
+    const double fresh = options.smoothing * (is_any_broken ? 1 : kFromLuck);
+    const double floor = options.spread_floor;
     for (std::size_t a = 0; a < space.size(); ++a) {
       Law& law = laws[a];
       const Axis& axis = space[a];
