@@ -158,7 +158,7 @@ KnownTriangles BlockFills::draw_rest(int tile_x, int tile_y, const FilledBlocks&
     const auto top = static_cast<float>(kTileSide * tile_y + kBlockSide * y) + 0.5f;
     draw_block({left, left + kBlockSide - 1, top, top + kBlockSide - 1}, 2 * x, 4 * y);
   }
-  return {&sheet_, names_.data(), tile_x, tile_y};
+  return {&sheet_, names_.data(), tile_x, tile_y, 0};
 }
 
 // `left`, `top`: the block's first packet in the sheet.

@@ -41,7 +41,7 @@ inline float least_of(const Eight& of) {
 
 PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __restrict closest,
                            float* __restrict other, std::uint32_t* __restrict owner,
-                           float* __restrict hidden) {
+                           float* __restrict hidden, std::uint8_t* __restrict changed) {
   for (std::size_t n = 0; n < batch.count; ++n) {
     const std::size_t i = batch.order[n];
     const float a[3] = {batch.a[0][i], batch.a[1][i], batch.a[2][i]};
@@ -96,6 +96,9 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
         to = static_cast<int>(right) + 1 < columns ? static_cast<int>(right) + 1 : columns;
       }
       const float b0 = b[0] * dy, b1 = b[1] * dy, b2 = b[2] * dy, dw = wy * dy;
+      std::uint8_t* const row_changed =
+          changed + static_cast<std::size_t>((batch.top[i] + y) >> 2) *
+                        static_cast<std::size_t>(packets_x >> 1);
       const std::size_t row =
           first + 8 * static_cast<std::size_t>(y) * static_cast<std::size_t>(packets_x);
       for (int x = from; x < to; ++x) {
@@ -119,6 +122,7 @@ PROBE_CLONES void draw_all(const TriangleBatch& batch, int packets_x, float* __r
         front = ahead ? w : front;
         name = ahead ? number : name;
         behind = kHiddenBehind * least_of(front);
+        row_changed[(batch.left[i] + x) >> 1] = 1;
         std::memcpy(closest + at, &front, sizeof front);
         std::memcpy(other + at, &second, sizeof second);
         std::memcpy(owner + at, &name, sizeof name);
@@ -183,6 +187,8 @@ void HitSheet::resize(int tiles_x, int tiles_y) {
   other_.resize(samples);
   owner_.resize(samples);
   hidden_.resize(samples / 8);
+  block_hidden_.resize(samples / 64);
+  changed_.resize(samples / 64);
 }
 
 void HitSheet::clear_block(int x, int y) {
@@ -191,10 +197,34 @@ void HitSheet::clear_block(int x, int y) {
     std::fill_n(other_.data() + packet_at(2 * x, row), 16, 0.0f);
     std::fill_n(hidden_.data() + packet_at(2 * x, row) / 8, 2, 0.0f);
   }
+  block_hidden_[block_at(x, y)] = 0;
+  changed_[block_at(x, y)] = 0;
 }
 
 void HitSheet::draw(const TriangleBatch& batch) {
-  draw_all(batch, packets_x_, closest_.data(), other_.data(), owner_.data(), hidden_.data());
+  draw_all(batch, packets_x_, closest_.data(), other_.data(), owner_.data(), hidden_.data(),
+           changed_.data());
+}
+
+bool HitSheet::hides(int x0, int y0, int x1, int y1, float closeness) {
+  constexpr int kMost = 64;
+  if ((x1 - x0 + 1) * (y1 - y0 + 1) > kMost) return false;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      float& hidden = block_hidden_[block_at(x, y)];
+      std::uint8_t& changed = changed_[block_at(x, y)];
+      if (changed != 0) {
+        changed = 0;
+        hidden = kNowhere;
+        for (int row = 4 * y; row < 4 * (y + 1); ++row) {
+          const float* const two = hidden_.data() + packet_at(2 * x, row) / 8;
+          hidden = std::min({hidden, two[0], two[1]});
+        }
+      }
+      if (!(closeness < hidden)) return false;
+    }
+  }
+  return true;
 }
 
 std::array<std::size_t, 8> HitSheet::packets_of(int block_x, int block_y) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/render/camera_rays.h"
+#include "runtime/render/instance_set.h"
 
 namespace probe::render {
 
@@ -42,6 +43,7 @@ struct TriangleBatch {
   using Ints = std::array<std::int32_t, kSize>;
   alignas(64) std::array<Floats, 3> a, b, e, touch;
   alignas(64) Floats w, wx, wy;
+  alignas(64) Floats most;  // closeness anywhere; only of those that hides() is asked about
   alignas(64) Ints left, top, columns, rows;  // packets of 4 x 2 samples
   alignas(64) Ints solid, fine;
   alignas(64) std::array<std::uint32_t, kSize> triangle;  // its number
@@ -73,6 +75,10 @@ class HitSheet {
   void resize(int tiles_x, int tiles_y);
   void clear_block(int x, int y);
   void draw(const TriangleBatch& batch);
+  // Whether something no closer than that, in a rectangle of blocks, both ends included, is clearly
+  // behind the foremost triangles of all samples there: it says nothing that is asked. False also
+  // of many blocks.
+  bool hides(int x0, int y0, int x1, int y1, float closeness);
   // Of a block of the sheet; nothing beyond `farthest` along each of its rays, whose cosines
   // (camera_rays.h) are given too, is of interest.
   void answer(int block_x, int block_y, const float* farthest, const float* cosines,
@@ -87,6 +93,10 @@ class HitSheet {
                 static_cast<std::size_t>(x));
   }
 
+  std::size_t block_at(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(packets_x_ / 2) +
+           static_cast<std::size_t>(x);
+  }
   // Where a block's packets begin.
   std::array<std::size_t, 8> packets_of(int block_x, int block_y) const;
 
@@ -99,6 +109,9 @@ class HitSheet {
   // A packet each: what is less close is clearly behind all its samples' foremost triangles, and
   // says nothing that is asked.
   std::vector<float> hidden_;
+  // The least of those of a block, and whether that has to be looked up again.
+  std::vector<float> block_hidden_;
+  std::vector<std::uint8_t> changed_;
 };
 
 struct TriangleName {
@@ -110,6 +123,9 @@ struct KnownTriangles {
   const HitSheet* sheet = nullptr;  // null: nothing is known
   const TriangleName* names = nullptr;
   int tile_x = 0, tile_y = 0;
+  InstanceSet rest = 0;  // blocks that these touch are not in it
+
+  bool has(InstanceSet block) const { return sheet != nullptr && (block & rest) == 0; }
 };
 
 }  // namespace probe::render

@@ -1,6 +1,7 @@
 #include "runtime/render/known_hits.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -20,7 +21,7 @@ constexpr float kEdgeDoubt = 4e-7f;
 constexpr float kThinRoom = 16.0f;
 
 // Setting up and drawing this many triangles costs as much as tracing a packet of rays.
-constexpr std::size_t kTrianglesForPacket = 5;
+constexpr std::size_t kTrianglesForPacket = 2;
 
 enum Kind : std::int32_t { kUnseen, kDrawn, kDoubtful };
 
@@ -112,6 +113,7 @@ PROBE_CLONES void set_up(const std::uint32_t* __restrict index, std::size_t coun
     out.top[i] = down.first;
     out.columns[i] = across.count;
     out.rows[i] = down.count;
+    out.most[i] = closest + wrong;
     out.solid[i] = solid;
     out.fine[i] = fine;
 
@@ -185,8 +187,7 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
   sheet_.resize(rays.tiles_x, rays.tiles_y);
   for (int y = 0; y < marks.blocks_y(); ++y) {
     for (int x = 0; x < marks.blocks_x(); ++x) {
-      if (!marks.marked(x, y)) continue;
-      sheet_.clear_block(x, y);
+      if (is_drawn(marks.touching(x, y))) sheet_.clear_block(x, y);
     }
   }
   order(instances, camera);
@@ -202,24 +203,51 @@ KnownTriangles KnownHits::look(const std::vector<Instance>& instances, const Cam
     }
   }
   flush_doubtful();
-  return {&sheet_, names_.data(), 0, 0};
+  return {&sheet_, names_.data(), 0, 0, rest_};
 }
 
+// Chooses what is drawn: all that is marked, but for instances of so many triangles in so few
+// packets that rays are cheaper; these have their blocks to themselves.
 bool KnownHits::is_worth_it(const BlockMarks& marks) {
-  wanted_ = 0;
-  std::size_t packets = 0;
-  for (int y = 0; y < marks.blocks_y(); ++y) {
-    for (int x = 0; x < marks.blocks_x(); ++x) {
-      if (!marks.marked(x, y)) continue;
-      wanted_ |= marks.touching(x, y);
-      packets += 8;
+  constexpr std::size_t kBits = 8 * sizeof(InstanceSet);
+  std::array<std::size_t, kBits> triangles{};
+  for (const Range& range : parts_)
+    triangles[static_cast<std::size_t>(std::countr_zero(range.bit))] += range.count;
+  rest_ = 0;
+  for (;;) {
+    wanted_ = 0;
+    std::size_t packets = 0, drawn = 0;
+    std::array<std::size_t, kBits> its_packets{};
+    for (int y = 0; y < marks.blocks_y(); ++y) {
+      for (int x = 0; x < marks.blocks_x(); ++x) {
+        const InstanceSet set = marks.touching(x, y);
+        if (!is_drawn(set)) continue;
+        wanted_ |= set;
+        packets += 8;
+        for (InstanceSet left = set; left != 0; left &= left - 1)
+          its_packets[static_cast<std::size_t>(std::countr_zero(left))] += 8;
+      }
     }
+    if (wanted_ == 0) return false;
+    std::size_t densest = kBits;
+    for (InstanceSet left = wanted_; left != 0; left &= left - 1) {
+      const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+      drawn += triangles[bit];
+      if (densest == kBits ||
+          triangles[bit] * its_packets[densest] > triangles[densest] * its_packets[bit])
+        densest = bit;
+    }
+    if (kTrianglesForPacket * packets > drawn) return true;
+    rest_ |= InstanceSet{1} << densest;
   }
-  std::size_t triangles = 0;
-  for (const Range& range : parts_) {
-    if ((wanted_ & range.bit) != 0) triangles += range.count;
-  }
-  return kTrianglesForPacket * packets > triangles;
+}
+
+// Whether a triangle of a batch lies in a marked block and is not hidden.
+bool KnownHits::is_asked(const TriangleBatch& batch, std::size_t i, const BlockMarks& marks,
+                         InstanceSet bit) {
+  const int x0 = batch.left[i] / 2, x1 = (batch.left[i] + batch.columns[i] - 1) / 2;
+  const int y0 = batch.top[i] / 4, y1 = (batch.top[i] + batch.rows[i] - 1) / 4;
+  return marks.any(x0, y0, x1, y1, bit) && !sheet_.hides(x0, y0, x1, y1, batch.most[i]);
 }
 
 void KnownHits::draw(const Instance& instance, const MeshGeometry::Part& part, std::uint32_t number,
@@ -240,12 +268,8 @@ void KnownHits::draw(const Instance& instance, const MeshGeometry::Part& part, s
         continue;
       }
       batch.triangle[i] = number + static_cast<std::uint32_t>(first + i);
-      if (!marks.any(batch.left[i] / 2, batch.top[i] / 4,
-                     (batch.left[i] + batch.columns[i] - 1) / 2,
-                     (batch.top[i] + batch.rows[i] - 1) / 4, bit)) {
-        continue;
-      }
-      batch.order[batch.count++] = static_cast<std::uint16_t>(i);
+      if (is_asked(batch, i, marks, bit))
+        batch.order[batch.count++] = static_cast<std::uint16_t>(i);
     }
     sheet_.draw(batch);
   }

@@ -39,10 +39,13 @@ class KnownHits {
   void name_all(const std::vector<Instance>& instances);
   void order(const std::vector<Instance>& instances, const Camera& camera);
   bool is_worth_it(const BlockMarks& marks);
+  bool is_drawn(InstanceSet block) const { return block != 0 && (block & rest_) == 0; }
   void limit(const Instance& instance, const MeshGeometry::Part& part, const Projection& projection,
              const Camera& camera);
   void draw(const Instance& instance, const MeshGeometry::Part& part, std::uint32_t number,
             const BlockMarks& marks, InstanceSet bit);
+  bool is_asked(const TriangleBatch& batch, std::size_t i, const BlockMarks& marks,
+                InstanceSet bit);
   void add_doubtful(const Instance& instance, const MeshGeometry::Part& part, std::size_t index,
                     std::uint32_t number, const BlockMarks& marks, InstanceSet bit);
   bool add_cone(const Instance& instance, const MeshGeometry::Part& part, std::size_t index,
@@ -61,9 +64,9 @@ class KnownHits {
     float depth;  // m: of the instance's origin
     std::uint32_t instance;
   };
-  std::vector<Turn> turns_;           // in which instances are drawn
-  std::vector<std::uint32_t> first_;  // an instance each: its first triangle's number
-  InstanceSet wanted_ = 0;            // of what is marked
+  std::vector<Turn> turns_;            // in which instances are drawn
+  std::vector<std::uint32_t> first_;   // an instance each: its first triangle's number
+  InstanceSet wanted_ = 0, rest_ = 0;  // of what is marked: drawn, and left to rays
   std::vector<TriangleName> names_;
   HitSheet sheet_;
   ProjectedPart part_;

@@ -186,7 +186,8 @@ class EmbreeRenderer final : public Renderer {
     if (closest == std::numeric_limits<float>::infinity()) return 0;
     PacketSet hidden = 0;
     for (int block = 0; block < 4; ++block) {
-      if (blocks[static_cast<std::size_t>(block)] == 0) continue;
+      const InstanceSet set = blocks[static_cast<std::size_t>(block)];
+      if (set == 0 || !known.has(set)) continue;
       hidden |= known.sheet->covers(2 * tile_x + block % 2, 2 * tile_y + block / 2, closest)
                 << (8 * block);
     }

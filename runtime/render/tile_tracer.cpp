@@ -104,7 +104,8 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, int tile,
       count = fill_block(block, filled[block], left_out, count);
       continue;
     }
-    if (known.sheet != nullptr) {
+    const bool is_known = known.has(blocks[block]);
+    if (is_known) {
       const int part = static_cast<int>(block);
       known.sheet->answer(2 * (tile % rays.tiles_x - known.tile_x) + part % 2,
                           2 * (tile / rays.tiles_x - known.tile_y) + part / 2,
@@ -114,7 +115,7 @@ void TileTracer::trace_packets(RTCScene scene, const CameraRays& rays, int tile,
       const std::size_t from = base + first;
       const std::size_t p = (first - 64 * block) / n;
       if ((left_out >> p & 1) != 0) continue;
-      if (known.sheet != nullptr && answers.settled(p)) {
+      if (is_known && answers.settled(p)) {
         count = take_known(known.names, answers, block, p, count);
         continue;
       }

@@ -184,7 +184,7 @@ Shares shares(const std::shared_ptr<scene::Mesh>& mesh, const Pose& pose) {
 }
 
 TEST_CASE("most of a plain thing is known without rays, and nothing of one drawn twice") {
-  const Shares ball = shares(sphere(0.1, 24), at(1, 0, 0));
+  const Shares ball = shares(sphere(0.1, 12), at(1, 0, 0));
   CHECK(ball.packets > 0);
   CHECK(ball.settled > ball.packets / 2);
   CHECK(ball.hits > 200);
