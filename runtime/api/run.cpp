@@ -160,12 +160,12 @@ int32_t vlaprobe_results(const char* folder, char** json, vlaprobe_error* error)
     PROBE_TRY(api::needs({{folder, "folder"}, {json, "json"}}));
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(folder));
     PROBE_ASSIGN(const store::ProvenResults proven, store::read_proven_results(folder));
-    std::string text = Json{
-        {"policy", record.identity.policy},
-        {"plan_root", record.identity.plan_root},
-        {"suite", record.suite},
-        {"refused",
-         proven.refused}}.dump();
+    Json told = {{"policy", record.identity.policy},
+                 {"plan_root", record.identity.plan_root},
+                 {"suite", record.suite},
+                 {"refused", proven.refused}};
+    if (!record.identity.until.empty()) told["until"] = record.identity.until;
+    std::string text = told.dump();
     // Rows are text already, and can be more than a tree of ours holds.
     text.back() = ',';
     text += "\"rows\":" + store::results_to_json(proven.rows) + "}";

@@ -12,6 +12,13 @@ namespace probe::ask {
 Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
                                std::vector<std::string>& notes) {
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
+  if (!record.identity.until.empty()) {
+    return Failure{Fault::kUsage,
+                   "stopped by what it found (" + record.identity.until +
+                       "): rates of answers about its ends would be of episodes that were chosen by "
+                       "how they ended; `run --until none` runs the others",
+                   dir};
+  }
   PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));
   Recorded recorded;
   const store::RunIdentity& identity = record.identity;

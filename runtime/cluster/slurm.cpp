@@ -251,6 +251,7 @@ class RunWork final : public ArrayWork {
     asked.identity.plan_root = to_hex(plan_.root());
     asked.identity.policy = name();
     asked.identity.live = options_.live ? to_text(*options_.live) : "";
+    asked.identity.until.clear();
     const std::string change = store::changes_between(*record, asked).identity;
     if (change.empty()) return {};
     return Failure{Fault::kStore, change + "; take another folder or remove this one", out};

@@ -59,14 +59,14 @@ void add_newest(std::vector<Failure>& newest, Failure failure) {
 }  // namespace
 
 std::optional<double> Seen::left_s() const {
-  if (!chosen || per_s <= 0) return std::nullopt;
+  if (!chosen || per_s <= 0 || !until.empty()) return std::nullopt;
   return static_cast<double>(std::max<std::int64_t>(0, *chosen - rows)) / per_s;
 }
 
 // What is told of failures is of the rows as they are: one that was run again and came out well is
 // none any more.
 Status Following::read(const std::string& dir, Folder& folder) {
-  Folder now{folder.stamp, {}, {}, {}};
+  Folder now{folder.stamp, folder.until, {}, {}, {}};
   const auto add_failure = [&](const store::ResultRow& row, std::string why) {
     const std::string trace = row.trace + " " + row.trace_sha256;
     double& ended = now.written[trace];
@@ -148,9 +148,11 @@ Result<Seen> Following::look(double now) {
     if (stamp != folder.stamp) {
       PROBE_ASSIGN(const auto record, store::find_run_record(dir));
       if (!record) continue;  // just being made
+      folder.until = record->identity.until;
       PROBE_TRY(read(dir, folder));
       folder.stamp = stamp;
     }
+    if (seen.until.empty()) seen.until = folder.until;
     for (const Row& row : folder.rows) {
       if (present > 0 && is_merged && !counted.insert(row.episode).second) continue;
       if (present > 0 && !is_shard) ++alone;
@@ -208,7 +210,11 @@ std::string why_command(const Failure& failure) {
 std::vector<std::string> to_lines(const Seen& seen) {
   const auto groups = [](std::int64_t n) { return digit_groups(static_cast<std::size_t>(n)); };
   std::string line = printable(seen.dir, kLongestWhy) + ": " + groups(seen.rows);
-  if (seen.chosen) line += fmt::format(" of {}{}", seen.is_about ? "about " : "", groups(*seen.chosen));
+  if (seen.chosen && seen.until.empty())
+    line += fmt::format(" of {}{}", seen.is_about ? "about " : "", groups(*seen.chosen));
+  // How many there will be depends on how they end; at its end a run says how many there are.
+  if (seen.chosen && !seen.until.empty() && !seen.is_done())
+    line += fmt::format(" of at most {}", groups(*seen.chosen));
   line += " episodes";
   if (seen.shards > 0 && seen.begun < seen.shards)
     line += fmt::format(", {} of {} shards begun", seen.begun, seen.shards);
@@ -223,7 +229,16 @@ std::vector<std::string> to_lines(const Seen& seen) {
     if (const auto left = seen.left_s()) line += fmt::format(", {} left", duration_text(*left));
   }
   std::vector<std::string> lines = {line};
+  if (!seen.until.empty())
+    lines.push_back(fmt::format("  stops by {}; `vlaprobe results {}` has its rates",
+                                printable(seen.until, kLongestWhy),
+                                shell_word(printable(seen.dir, kLongestWhy))));
   for (const auto& [name, count] : seen.rates) {
+    if (!seen.until.empty()) {
+      lines.push_back(fmt::format("  {:<12} {:>9} of {:<9}", printable(name, kLongestWhy),
+                                  groups(count.k), groups(count.n)));
+      continue;
+    }
     const stats::Interval interval = stats::wilson(count);
     lines.push_back(fmt::format("  {:<12} {:>9} of {:<9} {:>5} %  [{}]",
                                 printable(name, kLongestWhy), groups(count.k),
@@ -243,12 +258,13 @@ std::vector<std::string> to_lines(const Seen& seen) {
 Json to_json(const Seen& seen) {
   Json rates = Json::array(), newest = Json::array();
   for (const auto& [name, count] : seen.rates) {
-    const stats::Interval interval = stats::wilson(count);
-    rates.push_back({{"name", name},
-                     {"k", count.k},
-                     {"n", count.n},
-                     {"low", interval.low},
-                     {"high", interval.high}});
+    Json rate = {{"name", name}, {"k", count.k}, {"n", count.n}};
+    if (seen.until.empty()) {
+      const stats::Interval interval = stats::wilson(count);
+      rate["low"] = interval.low;
+      rate["high"] = interval.high;
+    }
+    rates.push_back(std::move(rate));
   }
   for (const Failure& failure : seen.newest) {
     newest.push_back({{"dir", failure.dir},
@@ -268,6 +284,7 @@ Json to_json(const Seen& seen) {
           {"is_about", seen.is_about},
           {"is_done", seen.is_done()},
           {"is_written", seen.is_written},
+          {"until", seen.until},
           {"shards", seen.shards},
           {"begun", seen.begun},
           {"merged", seen.merged},

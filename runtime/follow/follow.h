@@ -31,6 +31,7 @@ struct Seen {
   std::optional<std::int64_t> chosen;  // by the newest calls; not of folders of older programs
   bool is_about = false;               // some shards have not begun: `chosen` is scaled up
   bool is_written = false;             // by a process of this machine
+  std::string until;                   // what it stops by: rates have no interval then
   int shards = 0, begun = 0;           // below DIR/shards; 0: it is one run
   int merged = 0;                      // of them, whose folders are gone: their rows are DIR's own
   std::vector<std::pair<std::string, stats::Count>> rates;  // truths of valid episodes
@@ -41,6 +42,7 @@ struct Seen {
   bool is_done() const {
     return chosen && !is_about && !is_written && rows >= *chosen && begun == shards;
   }
+  // Not of a run that stops by what it finds.
   std::optional<double> left_s() const;
 };
 
@@ -62,6 +64,7 @@ class Following {
   };
   struct Folder {
     std::string stamp;  // of its database when it was read
+    std::string until;  // RunIdentity::until
     std::vector<Row> rows;
     std::vector<Failure> newest;                      // as of that reading
     std::unordered_map<std::string, double> written;  // when, by trace of a failure

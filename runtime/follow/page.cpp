@@ -22,7 +22,7 @@ constexpr char kHtml[] = R"html(<!doctype html>
 <title>vlaprobe</title><link rel="stylesheet" href="page.css"></head>
 <body><main><h1 id="dir"></h1><p id="counts" role="status"></p>
 <progress id="bar" max="1" value="0" aria-label="episodes that are there"></progress>
-<table><caption>Rates of valid episodes, with 95 % intervals</caption><tbody id="rates"></tbody></table>
+<table><caption>Valid episodes; rates have 95 % intervals where all that were chosen are run</caption><tbody id="rates"></tbody></table>
 <h2>Newest failures</h2><ol id="newest"></ol><p id="trouble" role="alert"></p></main>
 <script src="page.js"></script></body></html>
 )html";
@@ -42,7 +42,7 @@ const made = (kind, text, kindOf) => { const e = document.createElement(kind); e
 function draw(run) {
   document.title = run.chosen ? `${Math.floor(100 * run.episodes / run.chosen)} % ${run.dir}` : run.dir;
   at("dir").textContent = run.dir;
-  const parts = [`${run.episodes.toLocaleString("en")}${run.chosen ? ` of ${run.is_about ? "about " : ""}${run.chosen.toLocaleString("en")}` : ""} episodes`];
+  const parts = [`${run.episodes.toLocaleString("en")}${run.chosen ? ` of ${run.until ? "at most " : run.is_about ? "about " : ""}${run.chosen.toLocaleString("en")}` : ""} episodes`];
   if (run.shards && run.begun < run.shards) parts.push(`${run.begun} of ${run.shards} shards begun`);
   if (run.merged) parts.push(`${run.merged} of ${run.shards} shards merged and removed`);
   if (run.not_attempted) parts.push(`${run.not_attempted} not attempted`);
@@ -54,8 +54,8 @@ function draw(run) {
   at("bar").value = run.chosen ? Math.min(1, run.episodes / run.chosen) : 0;
   at("rates").replaceChildren(...run.rates.map((rate) => {
     const row = document.createElement("tr");
-    row.append(made("td", rate.name), made("td", `${rate.k} of ${rate.n}`, "number"), made("td", rate.n ? `${(100 * rate.k / rate.n).toFixed(1)} %` : "", "number"),
-      made("td", `${(100 * rate.low).toFixed(1)} to ${(100 * rate.high).toFixed(1)}`, "number"));
+    row.append(made("td", rate.name), made("td", `${rate.k} of ${rate.n}`, "number"), made("td", rate.n && rate.low !== undefined ? `${(100 * rate.k / rate.n).toFixed(1)} %` : "", "number"),
+      made("td", rate.low === undefined ? "" : `${(100 * rate.low).toFixed(1)} to ${(100 * rate.high).toFixed(1)}`, "number"));
     return row;
   }));
   at("newest").replaceChildren(...run.newest_failures.map((one) => {

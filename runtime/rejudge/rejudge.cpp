@@ -46,6 +46,14 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
     if (is_same(options.out, dir)) {
       return Failure{Fault::kUsage, "the folder that is judged is not overwritten", options.out};
     }
+    // Under other rules its order and what it was decided against would mean something else.
+    if (!record.identity.until.empty()) {
+      return Failure{Fault::kUsage,
+                     "stopped by what it found (" + record.identity.until +
+                         "), which a folder of other verdicts would not say: judge it without -o, or "
+                         "run the other episodes first with `run --until none`",
+                     dir};
+    }
   }
   RejudgeReport report;
   report.same_plan = plan.root() == recorded.root();

@@ -203,7 +203,7 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
     const bool is_known = std::ranges::any_of(
         added, [&](const PublishedFigure& figure) { return is_same_cell(figure, real); });
     for (std::size_t p = 0; p < benchmark.policies.size() && !is_known; ++p) {
-      if (benchmark.policies[p].name != real.policy) continue;
+      if (benchmark.policies[p].name != real.policy || benchmark.policies[p].adaptive) continue;
       const RunRate of = run_rate(benchmark, static_cast<int>(p), column_of(real));
       if (of.count.n == 0) continue;
       PublishedFigure figure = real;
@@ -220,7 +220,10 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
     if (is_rate(figure) && figure.protocol == kReal) known.insert(figure.policy);
   for (const PublishedFigure& figure : added) counted.insert(figure.policy);
   for (const auto& policy : benchmark.policies) {
-    if (!known.contains(policy.name)) {
+    if (policy.adaptive) {
+      left_out.push_back(fmt::format("`{}` is left out: {}", policy.name,
+                                     adaptive::why_not_fixed(to_text(policy.adaptive->rule))));
+    } else if (!known.contains(policy.name)) {
       left_out.push_back(fmt::format(
           "`{}` has no real rate in the table, which knows {}: name runs as it does, with --name",
           policy.name, fmt::join(known, ", ")));

@@ -149,6 +149,11 @@ void order_metrics(Benchmark& benchmark) {
 void drop_unused_tasks(Benchmark& benchmark, const JoinedPlans& plans) {
   std::vector<bool> used(benchmark.tasks.size(), false);
   for (const Episode& e : benchmark.episodes) used[static_cast<std::size_t>(e.task)] = true;
+  for (const Policy& policy : benchmark.policies) {
+    if (!policy.adaptive) continue;
+    for (const AdaptivePolicy::Place& place : policy.adaptive->order)
+      if (place.task != kAbsent) used[static_cast<std::size_t>(place.task)] = true;
+  }
   for (const AskedModel& model : benchmark.models) {
     for (const AskedModel::Known& known : model.known)
       used[static_cast<std::size_t>(known.task)] = true;
@@ -173,6 +178,11 @@ void drop_unused_tasks(Benchmark& benchmark, const JoinedPlans& plans) {
     if (task.baseline != kAbsent) task.baseline = now[static_cast<std::size_t>(task.baseline)];
   }
   for (Episode& e : benchmark.episodes) e.task = now[static_cast<std::size_t>(e.task)];
+  for (Policy& policy : benchmark.policies) {
+    if (!policy.adaptive) continue;
+    for (AdaptivePolicy::Place& place : policy.adaptive->order)
+      if (place.task != kAbsent) place.task = now[static_cast<std::size_t>(place.task)];
+  }
   for (AskedModel& model : benchmark.models) {
     for (AskedModel::Known& known : model.known)
       known.task = now[static_cast<std::size_t>(known.task)];

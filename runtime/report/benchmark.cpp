@@ -65,6 +65,14 @@ void index_episodes(Benchmark& benchmark) {
                       static_cast<std::size_t>(e.task) + 1];
   }
   for (std::size_t i = 0; i < cells; ++i) benchmark.first[i + 1] += benchmark.first[i];
+  for (Policy& policy : benchmark.policies) {
+    if (!policy.adaptive) continue;
+    policy.adaptive->by_task.assign(benchmark.tasks.size(), {});
+    for (std::size_t i = 0; i < policy.adaptive->order.size(); ++i) {
+      const int task = policy.adaptive->order[i].task;
+      if (task != kAbsent) policy.adaptive->by_task[static_cast<std::size_t>(task)].push_back(i);
+    }
+  }
 }
 
 }  // namespace probe::report

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/adaptive/rule.h"
+#include "runtime/adaptive/sampled.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/report/asked_model.h"
@@ -96,10 +98,30 @@ struct RunInfo {
 enum class Role : std::uint8_t { kModel, kCeiling, kFloor, kRandom, kProbe };
 std::string_view to_text(Role role);
 
+// A run that stops by what it finds: only episodes that count (adaptive/sampled.h) are in the
+// benchmark, and no test or interval of a fixed number is made of them.
+struct AdaptivePolicy {
+  adaptive::Rule rule;
+  stats::Drawing drawing = stats::Drawing::kAnyhow;
+  struct Place {
+    int task = 0, start = 0, seed = 0;
+    bool operator==(const Place&) const = default;
+  };
+  std::vector<Place> order = {};  // of all that could have been run
+  std::vector<int> seeds = {};    // of these, ascending
+  std::vector<std::vector<std::size_t>> by_task = {};  // places, see index_episodes
+
+  std::span<const std::size_t> places_of(int task) const {
+    const auto at = static_cast<std::size_t>(task);
+    return at < by_task.size() ? std::span(by_task[at]) : std::span<const std::size_t>();
+  }
+};
+
 struct Policy {
   std::string name, label;  // labels are unique
   Role role = Role::kModel;
   std::vector<RunInfo> runs;
+  std::optional<AdaptivePolicy> adaptive = {};  // then it has one run
 };
 
 // Which truths hold, by metric; those behind the last one that does are false. Most plans have few.
@@ -179,6 +201,12 @@ struct Benchmark {
   int find_task(std::string_view name) const;
   std::span<const Episode> of(int policy, int task) const;
   std::vector<int> all_tasks() const;
+  bool is_adaptive(int policy) const {
+    return policies[static_cast<std::size_t>(policy)].adaptive.has_value();
+  }
+  bool has_adaptive() const {
+    return std::ranges::any_of(policies, [](const Policy& p) { return p.adaptive.has_value(); });
+  }
 
   std::vector<std::size_t> first;  // episode of policy * tasks + task, and the end
   // What its episodes are called in sentences.

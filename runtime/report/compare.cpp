@@ -9,6 +9,7 @@
 
 #include "runtime/base/percent.h"
 #include "runtime/plan/axes.h"
+#include "runtime/report/compare_adaptive.h"
 #include "runtime/report/models.h"
 #include "runtime/report/page_data.h"
 
@@ -322,6 +323,22 @@ bool differs_somewhere(const Comparison& comparison, int metric) {
   });
 }
 
+// Of runs of which one stops by what it finds.
+std::string anytime_verdict(const Benchmark& benchmark, const Comparison& comparison,
+                            const AnytimeRow& row) {
+  const Metric& metric = benchmark.metrics[static_cast<std::size_t>(row.metric)];
+  const std::string numbers = fmt::format(
+      "{} against {}; of {} starts {} has more on {}, fewer on {}; anytime-valid {}",
+      rate(row.first), rate(row.second), row.starts, comparison.a, row.won, row.lost,
+      p_text(row.adjusted));
+  if (!row.is_real())
+    return fmt::format("{}: not decided on these starts ({}).", metric.name, numbers);
+  const bool a_better = (row.leads > 0) == (metric.good >= 0);
+  return fmt::format("{}: {} is {} on these starts ({}).", metric.name,
+                     a_better ? comparison.a : comparison.b,
+                     metric.good == 0 ? "higher" : "better", numbers);
+}
+
 const char* scope_name(Scope scope) {
   switch (scope) {
     case Scope::kAll:
@@ -355,6 +372,9 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
     }
     metrics.push_back(metric);
   }
+  const bool is_adaptive = benchmark.is_adaptive(a) || benchmark.is_adaptive(b);
+  if (metrics.empty() && is_adaptive && benchmark.find_metric("success") != kAbsent)
+    metrics = {benchmark.find_metric("success")};  // which it was stopped by
   if (metrics.empty()) {
     metrics = table_metrics(benchmark);
     // What counts first stands first.
@@ -376,6 +396,15 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
         shared.common, benchmark.things, shared.only_a, comparison.a, shared.only_b, comparison.b));
   }
   for (const Note& note : benchmark.notes) comparison.notes.push_back(note.text);
+  if (is_adaptive) {
+    PROBE_ASSIGN(comparison.anytime, compare_at_any_time(benchmark, a, b, metrics));
+    for (const AnytimeRow& row : comparison.anytime)
+      comparison.words.push_back(anytime_verdict(benchmark, comparison, row));
+    comparison.notes.push_back(
+        "the starts were won or lost one by one, which may be looked at at any time; how large the "
+        "difference is, categories, tasks, and what holds for starts never tried are left out");
+    return comparison;
+  }
   comparison.rows = Comparer(benchmark, a, b, shared.tasks).rows(metrics);
   say(benchmark, a, b, comparison);
   return comparison;
@@ -427,6 +456,18 @@ Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
                {"words", comparison.words},
                {"notes", comparison.notes}};
   json["rows"] = Json::array();
+  for (const AnytimeRow& row : comparison.anytime) {
+    json["at_any_time"].push_back(
+        {{"metric", benchmark.metrics[static_cast<std::size_t>(row.metric)].name},
+         {"a", {{"k", row.first.k}, {"n", row.first.n}}},
+         {"b", {{"k", row.second.k}, {"n", row.second.n}}},
+         {"starts", row.starts},
+         {"a_wins", row.won},
+         {"b_wins", row.lost},
+         {"p", row.p},
+         {"p_adjusted", row.adjusted},
+         {"real", row.is_real()}});
+  }
   for (const ComparedRow& row : comparison.rows) {
     const Contrast& c = row.contrast;
     Json one = {{"scope", scope_name(row.scope)},

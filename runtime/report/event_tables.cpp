@@ -83,7 +83,7 @@ Tables tables_of(const Benchmark& made) {
       const std::size_t first = tables.deltas.size();
       for (int t = 0; t < tasks; ++t) {
         row.push_back(estimate(made, p, metric, {t}));
-        if (made.tasks[static_cast<std::size_t>(t)].baseline == kAbsent) continue;
+        if (made.tasks[static_cast<std::size_t>(t)].baseline == kAbsent || made.is_adaptive(p)) continue;
         DeltaRow delta{p, t, metric, variant_contrast(made, p, metric, t), false};
         if (delta.contrast.first.n > 0 && delta.contrast.second.n > 0)
           tables.deltas.push_back(std::move(delta));

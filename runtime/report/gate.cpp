@@ -181,6 +181,14 @@ Result<Gate> gate(const Benchmark& benchmark, const GateOptions& options) {
     return Failure{Fault::kUsage, "--allow is a share of the episodes, 0 to below 100 %", ""};
   if (!(options.error > 0 && options.error < 0.5))
     return Failure{Fault::kUsage, "--error is a chance above 0 and below 50 %", ""};
+  for (const int policy : {kNow, kBefore}) {
+    if (!benchmark.is_adaptive(policy)) continue;
+    const Policy& of = benchmark.policies[static_cast<std::size_t>(policy)];
+    return Failure{Fault::kUsage,
+                   "nothing is said: " + adaptive::why_not_fixed(to_text(of.adaptive->rule)) +
+                       "; `run --until none` runs the others, and `compare` says what is decided",
+                   of.runs.empty() ? of.label : of.runs.front().dir};
+  }
   PROBE_ASSIGN(const int metric, metric_of(benchmark, options.metric));
   std::vector<Measured> measured;
   measured.push_back(measure(benchmark, metric, options, "all tasks", benchmark.all_tasks()));

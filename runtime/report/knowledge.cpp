@@ -42,8 +42,9 @@ class KnowledgeMaker {
     does_ = benchmark_.find_metric("success");
     if (goes_ != kAbsent && does_ != kAbsent) {
       for (std::size_t m = 0; m < benchmark_.models.size(); ++m) {
-        for (std::size_t p = 0; p < benchmark_.policies.size(); ++p)
-          knows(static_cast<int>(m), static_cast<int>(p));
+        for (std::size_t p = 0; p < benchmark_.policies.size(); ++p) {
+          if (!benchmark_.policies[p].adaptive) knows(static_cast<int>(m), static_cast<int>(p));
+        }
       }
       adjust_all();
     }

@@ -31,9 +31,11 @@ namespace fs = std::filesystem;
 // Begins what stands behind the name of a policy whose world did not wait for it: it is compared
 // with the same policy in a world that does, and never joined to it.
 constexpr std::string_view kLive = " (live, ";
+// The same of one that stops by what it finds.
+constexpr std::string_view kUntil = " (until ";
 
 Role role_of(std::string_view policy) {
-  const std::string_view name = policy.substr(0, std::min(policy.find(':'), policy.find(kLive)));
+  const std::string_view name = policy.substr(0, std::min({policy.find(':'), policy.find(kLive), policy.find(kUntil)}));
   if (name == "expert") return Role::kCeiling;
   if (name == "null" || name == "idle") return Role::kFloor;
   if (name == "random") return Role::kRandom;
@@ -191,6 +193,12 @@ class FolderLoader {
     std::string last;  // task
     std::optional<std::uint32_t> task;
     const bool has_videos = is_folder(dir + "/videos");
+    PROBE_ASSIGN(const auto adaptive, adaptive::read_adaptive(dir));
+    std::map<store::EpisodeKey, std::size_t> places;
+    for (std::size_t i = 0; adaptive && i < adaptive->order.size(); ++i)
+      places.emplace(adaptive->order[i].key, i);
+    std::vector<bool> has_row(places.size());
+    std::vector<std::size_t> place_of;  // by episode
     PROBE_TRY(each_row(dir, &info.live, [&](store::ResultRow&& row) -> Status {
       delivery.add(row);
       // A task's rows stand together.
@@ -237,6 +245,12 @@ class FolderLoader {
           ++info.videos;
         }
       }
+      if (adaptive) {
+        const auto place = places.find(store::key_of(row));
+        if (place == places.end()) return {};
+        has_row[place->second] = true;
+        place_of.push_back(place->second);
+      }
       has_task.resize(std::max(has_task.size(), benchmark_.tasks.size()), 0);
       has_task[static_cast<std::size_t>(episode.task)] = 1;
       if (keeps_all_ || (!row.invalid && kept[episode.task][succeeded ? 1 : 0]++ < kKept)) {
@@ -259,11 +273,52 @@ class FolderLoader {
     const PlanInfo& of_plan = benchmark_.plans[static_cast<std::size_t>(plan)];
     info.expected =
         of_plan.starts * static_cast<int>(std::max<std::size_t>(1, record.seeds.size()));
+    std::optional<AdaptivePolicy> of_policy;
+    if (adaptive) of_policy = leave_counted(dir, *adaptive, file, map, has_row, place_of, info, episodes);
     std::string name = printable(record.identity.policy, kLongestText);
     if (!record.identity.live.empty())
       name += " (" + printable(record.identity.live, kLongestText) + ")";
-    place_run(name, std::move(info), std::move(episodes));
+    if (adaptive) name += std::string(kUntil) + to_text(adaptive->rule) + ")";
+    place_run(name, std::move(info), std::move(episodes), std::move(of_policy));
     return {};
+  }
+
+  // Of a run that stops by what it finds, the episodes that count; and what its policy is told by.
+  AdaptivePolicy leave_counted(const std::string& dir, const adaptive::AdaptiveRun& run,
+                               const plan::Plan& file, const PlanTasks& map,
+                               const std::vector<bool>& has_row,
+                               const std::vector<std::size_t>& place_of, RunInfo& info,
+                               std::vector<Episode>& episodes) {
+    AdaptivePolicy out{run.rule, run.drawing};
+    out.seeds = adaptive::seeds_of(run.order);
+    for (const store::OrderedEpisode& one : run.order) {
+      const auto task = file.find_task(one.key.task);
+      const auto start = static_cast<std::size_t>(one.key.episode);
+      // A place that nobody can have is a gap for good.
+      if (!task || one.key.episode < 0 || start >= map.start[*task].size()) {
+        out.order.push_back({kAbsent, kAbsent, one.key.seed});
+      } else {
+        out.order.push_back({map.task[*task], map.start[*task][start], one.key.seed});
+      }
+    }
+    const std::vector<bool> counted = adaptive::counted_places(run, has_row);
+    std::vector<Episode> left;
+    for (std::size_t i = 0; i < episodes.size(); ++i)
+      if (counted[place_of[i]]) left.push_back(std::move(episodes[i]));
+    note("note", fmt::format("`{}`: stops by {}: {} of {} episodes count; its rates have intervals "
+                             "that hold whenever it stopped, of what all {} would have. Left out are "
+                             "its differences, rankings and models: {}",
+                             dir, to_text(run.rule), left.size(), run.order.size(),
+                             run.order.size(), adaptive::why_not_fixed(to_text(run.rule))));
+    if (left.size() < episodes.size())
+      note("warn", fmt::format("`{}`: {} rows do not count yet, since episodes before them in its "
+                               "order are missing",
+                               dir, episodes.size() - left.size()));
+    episodes = std::move(left);
+    // It is not meant to have the others.
+    info.expected = static_cast<int>(episodes.size());
+    info.done = info.expected;
+    return out;
   }
 
   // Of a text in a list that has each once; `known` has their numbers.
@@ -285,17 +340,22 @@ class FolderLoader {
   }
 
   // Joins a run to a policy of its name whose episodes are others, as shards' are.
-  void place_run(const std::string& name, RunInfo info, std::vector<Episode> episodes) {
+  void place_run(const std::string& name, RunInfo info, std::vector<Episode> episodes,
+                 std::optional<AdaptivePolicy> of_policy) {
     std::vector<Key> keys;
     keys.reserve(episodes.size());
     for (const Episode& e : episodes) keys.emplace_back(e.task, e.start, e.seed);
     std::sort(keys.begin(), keys.end());
-    std::size_t policy = options_.join ? 0 : benchmark_.policies.size();
+    // Two orders are no order: shards of such a run are joined by `merge`.
+    const bool joins = options_.join && !of_policy;
+    std::size_t policy = joins ? 0 : benchmark_.policies.size();
     for (; policy < benchmark_.policies.size(); ++policy) {
-      if (benchmark_.policies[policy].name == name && !meets(held_[policy], keys)) break;
+      if (benchmark_.policies[policy].name == name && !benchmark_.policies[policy].adaptive &&
+          !meets(held_[policy], keys))
+        break;
     }
     if (policy == benchmark_.policies.size()) {
-      benchmark_.policies.push_back({name, name, role_of(name), {}});
+      benchmark_.policies.push_back({name, name, role_of(name), {}, std::move(of_policy)});
       held_.emplace_back();
     }
     const auto middle = static_cast<std::ptrdiff_t>(held_[policy].size());

@@ -35,7 +35,7 @@ struct Row {
 std::vector<Row> rows_of(const Benchmark& benchmark, int metric) {
   std::vector<Row> rows;
   for (const Episode& e : benchmark.episodes) {
-    if (!e.valid()) continue;
+    if (!e.valid() || benchmark.is_adaptive(e.policy)) continue;
     const auto& metrics = benchmark.tasks[static_cast<std::size_t>(e.task)].metrics;
     if (std::find(metrics.begin(), metrics.end(), metric) == metrics.end()) continue;
     if (rows.empty() || rows.back().policy != e.policy || rows.back().task != e.task ||
@@ -300,12 +300,16 @@ std::vector<MixedModel> mixed_models(const Benchmark& benchmark, const std::vect
 }
 
 std::vector<RankRow> ranking(const Benchmark& benchmark, int metric) {
-  const auto n = static_cast<Eigen::Index>(benchmark.policies.size());
+  std::vector<int> policies;
+  for (int p = 0; p < static_cast<int>(benchmark.policies.size()); ++p)
+    if (!benchmark.is_adaptive(p)) policies.push_back(p);
+  const auto n = static_cast<Eigen::Index>(policies.size());
   if (n < 2) return {};
+  const auto policy = [&](Eigen::Index i) { return policies[static_cast<std::size_t>(i)]; };
   Eigen::MatrixXd wins = Eigen::MatrixXd::Zero(n, n);
   for (Eigen::Index a = 0; a < n; ++a) {
     for (Eigen::Index b = a + 1; b < n; ++b) {
-      for (const int sign : outcomes(benchmark, static_cast<int>(a), static_cast<int>(b), metric)) {
+      for (const int sign : outcomes(benchmark, policy(a), policy(b), metric)) {
         wins(a, b) += sign > 0 ? 1 : sign == 0 ? 0.5 : 0;
         wins(b, a) += sign < 0 ? 1 : sign == 0 ? 0.5 : 0;
       }
@@ -316,7 +320,7 @@ std::vector<RankRow> ranking(const Benchmark& benchmark, int metric) {
   const double z = stats::normal_two_sided(0.95);
   std::vector<RankRow> rows;
   for (Eigen::Index i = 0; i < n; ++i) {
-    rows.push_back({static_cast<int>(i), metric, ranked->strength(i),
+    rows.push_back({policy(i), metric, ranked->strength(i),
                     ranked->strength(i) - z * ranked->standard_error(i),
                     ranked->strength(i) + z * ranked->standard_error(i)});
   }
@@ -330,6 +334,7 @@ std::vector<SequentialRow> sequential(const Benchmark& benchmark, int metric) {
   const int n = static_cast<int>(benchmark.policies.size());
   for (int a = 0; a < n; ++a) {
     for (int b = a + 1; b < n; ++b) {
+      if (benchmark.is_adaptive(a) || benchmark.is_adaptive(b)) continue;
       const Contrast contrast = policy_contrast(benchmark, a, b, metric, benchmark.all_tasks());
       if (contrast.anew.nets.empty()) continue;
       rows.push_back({a, b, metric, look(contrast.here.nets), look(contrast.anew.nets)});

@@ -246,9 +246,19 @@ std::vector<std::string> what_was_run(const Benchmark& benchmark) {
 
 }  // namespace
 
-const char kIntervalText[] =
+std::string adaptive_interval_text() {
+  return "Where a policy's name says \"until\", how many episodes were run depended on how they "
+         "ended: 95 % intervals are of the rate that all its episodes would have and hold whenever it "
+         "stopped (sampling without replacement), and rates over several tasks are weighted by how "
+         "many episodes each could have.";
+}
+
+std::string interval_text(const Benchmark& benchmark) {
+  const std::string fixed =
     "95 % intervals: Wilson's, with episodes counted as what they are worth: starts in one place "
     "form a cluster, tasks are strata (with one task and one seed, Wilson's own)";
+  return fixed + (benchmark.has_adaptive() ? ". " + adaptive_interval_text() : "");
+}
 
 double rounded(double value) { return probe::rounded(value, 4); }
 
@@ -276,8 +286,10 @@ void put_answers(Json& json, const Contrast& contrast, double scale, bool adjust
 
 Json to_json(const std::optional<Estimate>& estimate) {
   if (!estimate || estimate->count.n == 0) return nullptr;
-  return {estimate->count.k, estimate->count.n, rounded(estimate->interval.low),
-          rounded(estimate->interval.high)};
+  Json json = {estimate->count.k, estimate->count.n, rounded(estimate->interval.low),
+               rounded(estimate->interval.high)};
+  if (estimate->weighted) json.push_back(rounded(*estimate->weighted));
+  return json;
 }
 
 Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptions& options) {
@@ -285,7 +297,7 @@ Json page_data(const Benchmark& benchmark, const Tables& tables, const PageOptio
   if (!options.command.empty()) data["command"] = options.command;
   if (!options.program.empty()) data["program"] = options.program;
   data["confidence"] = 0.95;
-  data["interval"] = kIntervalText;
+  data["interval"] = interval_text(benchmark);
   data["run"] = what_was_run(benchmark);
   data["findings"] = findings(benchmark, tables);
   data["notes"] = Json::array();

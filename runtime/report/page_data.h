@@ -41,7 +41,7 @@ Json external_json(const Benchmark& benchmark, const std::vector<PublishedTable>
 // [{level, text, see}], most important first.
 Json findings(const Benchmark& benchmark, const Tables& tables);
 
-// [k, n, low, high], ends rounded to four digits; null without an episode.
+// [k, n, low, high, rate?], rounded to four digits, see PAGE_DATA.md; null without an episode.
 Json to_json(const std::optional<Estimate>& estimate);
 double rounded(double value);  // to four digits behind the point
 // "p = 0.19", "p < 0.0001".
@@ -53,8 +53,10 @@ void put_answers(Json& json, const Contrast& contrast, double scale = 1, bool ad
 inline constexpr char kOnTheseStarts[] = "on_these_starts";
 inline constexpr char kForStartsNeverTried[] = "for_starts_never_tried";
 
-// What an interval of these tables is, in one sentence.
-extern const char kIntervalText[];
+// What an interval of these tables is, in a sentence or two.
+std::string interval_text(const Benchmark& benchmark);
+// Of policies that stop by what they find.
+std::string adaptive_interval_text();
 
 // Floors and ceilings that were measured before, as suite/floors.csv holds them, for tasks of which
 // the runs have none; a file of another plan is a note.

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "runtime/base/numbering.h"
+#include "runtime/base/percent.h"
 #include "runtime/inspect/axes.h"
 
 namespace probe::report {
@@ -130,6 +131,39 @@ void adjust_rows(Rows& rows, Adjustment method, Family family) {
   for (const auto& [key, members] : families) adjust(members, method);
 }
 
+// Of a policy that stops by what it finds; nothing where no interval can be vouched for.
+std::optional<Estimate> adaptive_estimate(const Benchmark& benchmark, int policy, int metric,
+                                          const std::vector<int>& tasks) {
+  const AdaptivePolicy& of = *benchmark.policies[static_cast<std::size_t>(policy)].adaptive;
+  const adaptive::Sampled lists(of.rule.kind, of.seeds);
+  std::vector<adaptive::SampledTask> all;
+  Estimate out;
+  for (const int task : tasks) {
+    if (!has(benchmark, task, metric)) continue;
+    std::map<std::pair<int, int>, std::vector<const Episode*>> episodes;  // by start and seed
+    for (const Episode& e : benchmark.of(policy, task)) episodes[{e.start, e.seed}].push_back(&e);
+    adaptive::SampledTask sampled;
+    for (const std::size_t index : of.places_of(task)) {
+      const AdaptivePolicy::Place& place = of.order[index];
+      auto& there = episodes[{place.start, place.seed}];
+      adaptive::Outcome outcome = adaptive::Outcome::kAbsent;
+      if (!there.empty()) {
+        outcome = outcome_of(*there.back(), metric);
+        out.count.k += outcome == adaptive::Outcome::kSuccess ? 1 : 0;
+        out.count.n += there.back()->valid() ? 1 : 0;
+        there.pop_back();
+      }
+      lists.add(sampled, place.seed, outcome);
+    }
+    if (!sampled.lists.empty()) all.push_back(std::move(sampled));
+  }
+  const auto rate = adaptive::rate_of(of.rule, of.drawing, all);
+  if (!rate || out.count.n == 0) return std::nullopt;
+  out.interval = rate->interval;
+  if (std::abs(rate->rate - out.count.rate()) > 1e-9) out.weighted = rate->rate;
+  return out;
+}
+
 class Maker {
  public:
   explicit Maker(const Benchmark& benchmark)
@@ -140,10 +174,10 @@ class Maker {
     for (int p = 0; p < policies(); ++p) {
       for (const int m : metrics_) {
         main_row(p, m);
-        deltas(p, m);
+        if (!benchmark_.is_adaptive(p)) deltas(p, m);
         objects(p, m);
       }
-      gap(p);
+      if (!benchmark_.is_adaptive(p)) gap(p);
     }
     floors();
     compare_policies();
@@ -294,6 +328,7 @@ class Maker {
   }
 
   void compare(int a, int b, int metric, int category, const std::vector<int>& tasks) {
+    if (benchmark_.is_adaptive(a) || benchmark_.is_adaptive(b)) return;
     PolicyRow row{a, b, metric, category, policy_contrast(benchmark_, a, b, metric, tasks)};
     if (is_empty(row.contrast)) return;
     tables_.policies.push_back(std::move(row));
@@ -305,6 +340,12 @@ class Maker {
 };
 
 }  // namespace
+
+adaptive::Outcome outcome_of(const Episode& episode, int metric) {
+  if (episode.valid())
+    return episode.is(metric) ? adaptive::Outcome::kSuccess : adaptive::Outcome::kFailure;
+  return episode.is_open ? adaptive::Outcome::kUnknown : adaptive::Outcome::kNotAttempted;
+}
 
 std::vector<int> table_metrics(const Benchmark& benchmark) {
   std::vector<int> metrics;
@@ -320,6 +361,7 @@ std::vector<int> table_metrics(const Benchmark& benchmark) {
 
 std::optional<Estimate> estimate(const Benchmark& benchmark, int policy, int metric,
                                  const std::vector<int>& tasks) {
+  if (benchmark.is_adaptive(policy)) return adaptive_estimate(benchmark, policy, metric, tasks);
   const auto rows = counts_of(benchmark, policy, metric, tasks);
   if (rows.empty()) return std::nullopt;
   return Estimate{total(rows), stats::clustered_rate(rows)};
@@ -409,6 +451,11 @@ PairRows policy_pairs(const Benchmark& benchmark, int a, int b, int metric,
 Contrast policy_contrast(const Benchmark& benchmark, int a, int b, int metric,
                          const std::vector<int>& tasks) {
   return policy_pairs(benchmark, a, b, metric, tasks).contrast();
+}
+
+std::string rate_text(const Estimate& estimate) {
+  return estimate.weighted ? decimal_text(100 * *estimate.weighted, 1)
+                           : percent_text(estimate.count.k, estimate.count.n);
 }
 
 Tables make_tables(const Benchmark& benchmark) { return Maker(benchmark).make(); }

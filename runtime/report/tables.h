@@ -14,11 +14,19 @@
 
 namespace probe::report {
 
-// k of n valid episodes, with the interval of clustered_rate.
+// k of n valid episodes, with the interval of clustered_rate, for starts never tried; of a policy that
+// stops by what it finds with that of adaptive::rate_of, of all episodes it could have run.
 struct Estimate {
   stats::Count count;
   stats::Interval interval;
+  // Where it is not k / n, because unlike shares of tasks were run.
+  std::optional<double> weighted = {};
+
+  double rate() const { return weighted ? *weighted : count.rate(); }
 };
+
+// In percent with one decimal.
+std::string rate_text(const Estimate& estimate);
 
 struct MainRow {
   int policy = 0, metric = 0;
@@ -88,6 +96,9 @@ struct Tables {
 // The metrics that tables are made of: success, intention, grasp, wrong, as far as there are such,
 // else every truth.
 std::vector<int> table_metrics(const Benchmark& benchmark);
+
+// How an episode ended, for whoever asks what is known of a run that stops by what it finds.
+adaptive::Outcome outcome_of(const Episode& episode, int metric);
 
 Tables make_tables(const Benchmark& benchmark);
 

@@ -23,7 +23,7 @@ std::string csv_rows(const Benchmark& benchmark, const Tables& tables) {
     text += csv_cell(policy_label(benchmark, row.policy)) + "," +
             csv_cell(metric_name(benchmark, row.metric));
     for (const auto& cell : cells)
-      text += "," + (cell ? percent_text(cell->count.k, cell->count.n) : "");
+      text += "," + (cell ? rate_text(*cell) : "");
     for (const auto& cell : cells) text += csv_counts(cell);
     text += ",measured\n";
   }

@@ -12,7 +12,7 @@ Json estimate_json(const std::optional<Estimate>& e) {
   if (!e) return nullptr;
   return {{"k", e->count.k},
           {"n", e->count.n},
-          {"percent", rounded(100 * e->count.rate())},
+          {"percent", rounded(100 * e->rate())},
           {"low", rounded(100 * e->interval.low)},
           {"high", rounded(100 * e->interval.high)}};
 }
@@ -63,7 +63,7 @@ Json rates_json(const Benchmark& benchmark, const std::vector<std::string>& name
 Json tables_as_json(const Benchmark& benchmark, const Tables& tables,
                     const std::vector<PublishedTable>& published, const AskedTables* asked) {
   const std::vector<std::string> names = column_names(benchmark);
-  Json json = {{"interval", std::string(kIntervalText)}};
+  Json json = {{"interval", interval_text(benchmark)}};
   json["main"] = Json::array();
   for (const MainRow& row : tables.main) {
     Json columns = Json::object();

@@ -53,7 +53,7 @@ std::string tex(const std::string& text) {
 // The rate above, count and interval below, small.
 std::string tex_cell(const std::optional<Estimate>& e) {
   if (!e) return "--";
-  return fmt::format("\\cell{{{}}}{{{}/{}}}{{{}}}", percent_text(e->count.k, e->count.n),
+  return fmt::format("\\cell{{{}}}{{{}/{}}}{{{}}}", rate_text(*e),
                      e->count.k, e->count.n,
                      percent_range(e->interval.low, e->interval.high, "--"));
 }
@@ -102,6 +102,11 @@ std::string tex_main(const Benchmark& benchmark, const Tables& tables,
          std::string(benchmark.things) +
          "; below, the count and "
          "the 95\\,\\% interval." +
+         (benchmark.has_adaptive()
+              ? " " + tex(adaptive_interval_text()) +
+                    " Differences of these policies are left out, since tests of a fixed number of "
+                    "episodes do not allow for it."
+              : std::string()) +
          (flagged ? std::string(" ?: no count of so many episodes gives this percentage.") : "") +
          "}\n\\end{table}\n";
 }

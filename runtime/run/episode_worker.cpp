@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "runtime/adaptive/sampled.h"
 #include "runtime/base/paths.h"
 #include "runtime/run/recorded.h"
 #include "runtime/servers/identity.h"
@@ -104,6 +105,7 @@ Status EpisodeWorker::spoil_last() {
   if (!last_valid_) return {};
   PROBE_TRY(
       shared_.store.invalidate({*last_valid_}, "policy: " + std::string(store::Store::kOutOfStep)));
+  if (shared_.ended) shared_.ended(*last_valid_, adaptive::Outcome::kUnknown);
   const std::lock_guard lock(shared_.mutex);
   ++shared_.summary.invalid;
   add_once(shared_.summary.notes, to_text(*last_valid_) +
@@ -121,6 +123,7 @@ Status EpisodeWorker::commit(const Played& played, int task_order) {
   const store::ResultRow& row = played.row;
   // Not under the lock: other worlds must not wait for the disk.
   PROBE_TRY(shared_.store.commit(row, task_order));
+  if (shared_.ended) shared_.ended(store::key_of(row), adaptive::outcome_of(row));
   last_valid_.reset();
   if (!row.invalid) last_valid_ = store::key_of(row);
   const std::lock_guard lock(shared_.mutex);
@@ -130,8 +133,8 @@ Status EpisodeWorker::commit(const Played& played, int task_order) {
   shared_.summary.not_attempted.add(row);
   if (store::is_open(row)) ++shared_.summary.invalid;
   if (shared_.options.progress) {
-    shared_.options.progress(
-        {shared_.summary.done, shared_.summary.skipped, shared_.summary.total, &row});
+    shared_.options.progress({shared_.summary.done, shared_.summary.skipped, shared_.summary.total,
+                              &row, shared_.options.until.has_value()});
   }
   if (is_exchanged()) {
     shared_.given_up = true;

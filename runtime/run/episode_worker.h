@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/adaptive/outcome.h"
 #include "runtime/run/episode.h"
 #include "runtime/run/run.h"
 #include "runtime/stage/assets.h"
@@ -31,6 +33,8 @@ struct WorkersShared {
   std::shared_ptr<servers::SharedLine> line;    // of all worlds, where they ask in batches
   std::shared_ptr<servers::Identity> identity;  // whom the call began with; none: no server
   std::vector<std::pair<std::string, std::string>> measured;
+  // Hears of every episode that was stored, and again of one that is made invalid later.
+  std::function<void(const store::EpisodeKey&, adaptive::Outcome)> ended = {};
   std::mutex mutex = {};  // summary, progress and what follows
   int lost_in_a_row = 0;  // episodes that a policy server's failures spoiled for good
   std::atomic<bool> given_up = false;

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <set>
 
+#include "runtime/adaptive/sampled.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/paths.h"
 #include "runtime/plan/roles.h"
+#include "runtime/run/adaptive_jobs.h"
 #include "runtime/run/callers_proof.h"
 #include "runtime/run/changed_folder.h"
 #include "runtime/run/delivery.h"
@@ -69,10 +71,10 @@ void note_idle_tasks(const plan::Plan& plan, const Selection& selection, const s
 using store::EpisodeKey;
 
 // Leaves the jobs that are not stored yet, or only as invalid. Returns the others.
-Result<std::set<EpisodeKey>> drop_stored(const plan::Plan& plan, store::Store& store,
-                                         std::vector<EpisodeJob>& jobs, RunSummary& summary) {
+std::set<EpisodeKey> drop_stored(const plan::Plan& plan,
+                                 const std::vector<store::StoredEpisode>& stored,
+                                 std::vector<EpisodeJob>& jobs, RunSummary& summary) {
   constexpr std::size_t kToldOneByOne = 5;
-  PROBE_ASSIGN(const auto stored, store.episodes());
   std::set<EpisodeKey> chosen, valid;
   for (const EpisodeJob& job : jobs) chosen.insert(key_of(plan, job));
   std::size_t again = 0;
@@ -135,6 +137,7 @@ Result<std::string> choose_folder(const RunOptions& options, store::RunRecord& r
     if (!stored) return dir;
     const bool moved = options.name.empty() && has_only_moved(stored->identity, record.identity);
     store::RunRecord here = record;
+    if (options.drops_until) here.identity.until = stored->identity.until;
     if (moved) here.identity.policy = stored->identity.policy;
     const store::RunChanges changes = store::changes_between(*stored, here);
     if (!changes.any()) {
@@ -232,6 +235,45 @@ Result<servers::KnownArm> arm_of(const plan::Plan& plan, const std::vector<Episo
   return arm;
 }
 
+// The rule that the run in the folder was begun with, which is to be dropped; none: it has none.
+Result<std::optional<adaptive::Rule>> rule_to_drop(const RunOptions& options) {
+  PROBE_ASSIGN(const auto stored, store::find_run_record(options.out));
+  if (!stored || stored->identity.until.empty()) return std::optional<adaptive::Rule>();
+  PROBE_ASSIGN(adaptive::Rule rule,
+               adaptive::rule_from_text(stored->identity.until, options.out));
+  return std::optional(std::move(rule));
+}
+
+// What a run that stops by itself knows now; whoever follows it is told when no more will come.
+Status sum_up(const std::string& out, RunSummary& summary) {
+  PROBE_ASSIGN(const auto run, adaptive::read_adaptive(out));
+  if (!run) return {};
+  adaptive::Summarizer sums(*run);
+  std::int64_t rows = 0;
+  PROBE_TRY(store::for_each_row(out, [&](store::ResultRow&& row) -> Status {
+    ++rows;
+    sums.add(row);
+    return {};
+  }));
+  summary.until = adaptive::to_lines(sums.summary());
+  store::write_chosen(out, rows);
+  return {};
+}
+
+// Every episode of the order has ended: which of them were run is not chosen any more.
+Status drop_rule(store::Store& store, const std::string& out,
+                 const std::vector<store::OrderedEpisode>& order, RunSummary& summary) {
+  std::set<EpisodeKey> there;
+  PROBE_TRY(store::for_each_row(out, [&](store::ResultRow&& row) -> Status {
+    there.insert(store::key_of(row));
+    return {};
+  }));
+  for (const store::OrderedEpisode& one : order)
+    if (!there.contains(one.key)) return {};
+  summary.notes.push_back("every episode has been run: the folder is like that of any other run");
+  return store.forget_until();
+}
+
 // Whether what makes tasks different reached the policy, over all that the folder holds.
 Status note_delivery(const plan::Plan& plan, const std::string& out, RunSummary& summary) {
   constexpr std::size_t kTold = 5;
@@ -291,8 +333,14 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
     is_of_successes = record.identity.only_success;
   }
+  std::optional<adaptive::Rule> dropped;
+  if (options.drops_until) {
+    PROBE_ASSIGN(dropped, rule_to_drop(options));
+  }
+  RunOptions choosing = options;
+  if (dropped) choosing.until = dropped;
   PROBE_ASSIGN(Selection selection,
-               select_jobs(plan, options, traits.draws, traits.recorded ? &recorded : nullptr));
+               select_jobs(plan, choosing, traits.draws, traits.recorded ? &recorded : nullptr));
   PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
 
   RunSummary summary;
@@ -304,6 +352,15 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
                             std::to_string(options.shards) + " holds no episode: nothing to do");
   }
   PROBE_TRY(check_seeds(selection, actor));
+  std::vector<store::OrderedEpisode> order;
+  if (options.until) {
+    PROBE_TRY(check_adaptive(*options.until, plan, options, traits.recorded, is_of_successes,
+                             selection.jobs));
+    PROBE_ASSIGN(order, put_in_order(*options.until, plan, options.out, selection.jobs));
+  } else if (dropped) {
+    PROBE_ASSIGN(const auto stored_order, store::read_order(options.out));
+    order = put_in_order_again(*dropped, plan, stored_order, selection.jobs);
+  }
   if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
   PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_of(selection.jobs)));
@@ -311,7 +368,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   store::RunRecord record{
       {to_hex(plan.root()), options.name.empty() ? options.policy : options.name,
        content_of(options, traits), options.live ? to_text(*options.live) : "",
-       options.only_success || is_of_successes},
+       options.only_success || is_of_successes, options.until ? to_text(*options.until) : ""},
       selection.suite,
       selection.seeds,
       fingerprint};
@@ -324,17 +381,33 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   store::write_chosen(options.out, summary.total);
   // A shard of nothing is a part of the run like any other, for whoever merges all of them.
   if (is_empty) return summary;
+  if (!order.empty() && !store->record().identity.until.empty())
+    PROBE_TRY(store->freeze_order(order));
   const std::vector<EpisodeJob> chosen = selection.jobs;
-  PROBE_ASSIGN(const auto stored, drop_stored(plan, *store, selection.jobs, summary));
+  PROBE_ASSIGN(const auto stored_rows, store->episodes());
+  const auto stored = drop_stored(plan, stored_rows, selection.jobs, summary);
+  std::optional<AdaptiveJobs> adaptive_jobs;
+  if (options.until) {
+    selection.jobs = chosen;
+    adaptive_jobs.emplace(*options.until, plan, chosen, order, stored_rows);
+  }
   summary.skipped = static_cast<int>(stored.size());
   // What the caller says more of the policy vouches for it.
   if (traits.content == store::kCallersPolicy)
     PROBE_TRY(check_callers_policy(plan, options, actor, summary.notes));
   PROBE_TRY(note_missing_videos(options, stored, summary));
-  if (options.progress) options.progress({0, summary.skipped, summary.total, nullptr});
+  if (options.progress)
+    options.progress({0, summary.skipped, summary.total, nullptr, options.until.has_value()});
   PROBE_ASSIGN(const auto unproven, store->unproven());
-  const bool is_there_all = selection.jobs.empty();
-  if (is_there_all && (unproven.empty() || !actor.server)) return summary;
+  const bool is_there_all = adaptive_jobs ? adaptive_jobs->is_done() : selection.jobs.empty();
+  const auto ended_well = [&]() -> Status {
+    if (dropped) PROBE_TRY(drop_rule(*store, options.out, order, summary));
+    return sum_up(options.out, summary);
+  };
+  if (is_there_all && (unproven.empty() || !actor.server)) {
+    PROBE_TRY(ended_well());
+    return summary;
+  }
 
   summary.call.fingerprint = fingerprint;
   summary.call.worlds = static_cast<int>(std::min((is_there_all ? chosen : selection.jobs).size(),
@@ -350,6 +423,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     if (is_there_all) {
       summary.call.ended = true;
       PROBE_TRY(store->write_call(summary.call));
+      PROBE_TRY(ended_well());
       return summary;
     }
     PROBE_TRY(proof->watch(*store));
@@ -376,8 +450,17 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     PROBE_TRY(worker->begin());
     return Worker([worker](std::size_t index) { return worker->run(index); });
   };
-  const Status ran = run_jobs(shared.jobs.size(), options.jobs, make_worker);
-  summary.call.ended = true;
+  if (adaptive_jobs) {
+    shared.ended = [&](const EpisodeKey& key, adaptive::Outcome outcome) {
+      adaptive_jobs->tell(key, outcome);
+    };
+  }
+  const Status ran = adaptive_jobs
+                         ? run_jobs(*adaptive_jobs, shared.jobs.size(), options.jobs, make_worker)
+                         : run_jobs(shared.jobs.size(), options.jobs, make_worker);
+  // Where episodes under way were left, what came next depended on more than what is stored.
+  const bool left_some = options.until && options.stopped && options.stopped();
+  summary.call.ended = !left_some;
   summary.call.episodes = summary.done;
   summary.call.queries = queries.figures();
   // A world on the clock does not stand while it is asked for.
@@ -391,6 +474,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   PROBE_TRY(ran);
   PROBE_TRY(written);
   PROBE_TRY(note_delivery(plan, options.out, summary));
+  PROBE_TRY(ended_well());
   return summary;
 }
 

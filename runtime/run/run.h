@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/adaptive/rule.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
 #include "runtime/policy/live.h"
@@ -43,8 +44,9 @@ struct OwnPolicy {
 struct RunProgress {
   int done = 0;                           // episodes finished by this call
   int skipped = 0;                        // found valid in the folder
-  int total = 0;                          // chosen episodes
+  int total = 0;                          // chosen episodes; at most, of a run that stops by itself
   const store::ResultRow* row = nullptr;  // the one just committed; null for the first report
+  bool is_at_most = false;                // how many are run depends on how they end
 };
 
 struct RunOptions {
@@ -70,6 +72,11 @@ struct RunOptions {
   std::optional<policy::LiveTerms> live = {};
   // Valid episodes that did not succeed are not stored; a later call does them again.
   bool only_success = false;
+  // Stops by what it finds: see runtime/adaptive. Of `decided-against` the folder alone is given.
+  std::optional<adaptive::Rule> until = {};
+  // The folder's rule is dropped: all that it left is run, and when every episode has a row the
+  // folder is like any other.
+  bool drops_until = false;
   VideoChoice video = VideoChoice::kNone;  // DIR/videos/TASK/EPISODE-SEED.mp4
   AssetRoot assets;                        // empty: found by itself
   // Called from worker threads, one call at a time.
@@ -85,6 +92,7 @@ struct RunSummary {
   int not_kept = 0;                   // no success, where only successes are stored
   store::NotAttempted not_attempted;  // not among the invalid
   std::vector<std::string> notes;     // sentences for stderr, such as why seeds were dropped
+  std::vector<std::string> until;     // lines about a run that stops by itself: what is known of it
   std::string out;                    // the folder that was written
   store::RunCall call;                // speed, and how busy server and simulators were
 };

@@ -74,6 +74,16 @@ int shard_of(const Sha256& episode_id, int seed, int shards) {
   return 1 + static_cast<int>(little_endian_number(hash) % static_cast<std::uint64_t>(shards));
 }
 
+namespace {
+
+// Where each task stops by itself, its episodes stay together.
+int shard_of_task(std::string_view task, int shards) {
+  const Sha256 hash = Hasher().text("shard of tasks").text(task).finish();
+  return 1 + static_cast<int>(little_endian_number(hash) % static_cast<std::uint64_t>(shards));
+}
+
+}  // namespace
+
 Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options, bool draws,
                               const std::vector<store::ResultRow>* recorded) {
   if (options.shards < 1 || options.shard < 1 || options.shard > options.shards) {
@@ -138,6 +148,7 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
   selection.seeds.erase(std::unique(selection.seeds.begin(), selection.seeds.end()),
                         selection.seeds.end());
 
+  const bool keeps_tasks = options.until && options.until->kind == adaptive::Rule::Kind::kEachTask;
   bool any = false, any_held = recorded == nullptr;
   for (const std::uint32_t task : tasks) {
     for (const std::uint32_t index : episodes_of(plan, suite, task)) {
@@ -152,7 +163,9 @@ Result<Selection> select_jobs(const plan::Plan& plan, const RunOptions& options,
           any_held = true;
         }
         const Sha256 id{plan.episodes(plan.tasks()[task])[index].episode_id};
-        if (shard_of(id, seed, options.shards) == options.shard) {
+        const int shard = keeps_tasks ? shard_of_task(plan.text(plan.tasks()[task].name), options.shards)
+                                      : shard_of(id, seed, options.shards);
+        if (shard == options.shard) {
           selection.jobs.push_back({task, index, seed});
         }
       }

@@ -11,23 +11,46 @@
 
 namespace probe::run {
 
+namespace {
+
+// One after the other.
+class InTurn final : public JobSource {
+ public:
+  explicit InTurn(std::size_t count) : count_(count) {}
+  std::optional<std::size_t> next() override {
+    const std::size_t index = next_.fetch_add(1);
+    if (index >= count_) return std::nullopt;
+    return index;
+  }
+  void stop() override { next_ = count_; }
+
+ private:
+  std::size_t count_;
+  std::atomic<std::size_t> next_{0};
+};
+
+}  // namespace
+
 Status run_jobs(std::size_t count, int workers,
                 const std::function<Result<Worker>()>& make_worker) {
-  std::atomic<std::size_t> next{0};
+  InTurn source(count);
+  return run_jobs(source, count, workers, make_worker);
+}
+
+Status run_jobs(JobSource& source, std::size_t count, int workers,
+                const std::function<Result<Worker>()>& make_worker) {
   std::mutex mutex;
   std::optional<Failure> first;
   const auto fail = [&](const Failure& failure) {
     const std::lock_guard lock(mutex);
     if (!first) first = failure;
-    next = count;
+    source.stop();
   };
   const auto work = [&] {
     auto worker = make_worker();
     if (!worker) return fail(worker.failure());
-    for (;;) {
-      const std::size_t index = next.fetch_add(1);
-      if (index >= count) return;
-      if (auto done = (*worker)(index); !done) return fail(done.failure());
+    while (const auto index = source.next()) {
+      if (auto done = (*worker)(*index); !done) return fail(done.failure());
     }
   };
   const auto threads = std::min(count, static_cast<std::size_t>(std::max(workers, 1)));

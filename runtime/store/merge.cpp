@@ -24,6 +24,7 @@ struct Source {
   std::vector<Fingerprint> builds;  // of the folder's first call and of all that are known
   std::vector<RunCall> calls;
   std::set<EpisodeKey> unproven;
+  std::vector<OrderedEpisode> order;  // of a run that stops by what it finds
 };
 
 // Where the best row of an episode so far is. Rows themselves are read once more when they are
@@ -48,6 +49,7 @@ Result<Source> read_source(const std::string& dir) {
   for (const RunCall& call : source.calls) source.builds.push_back(call.fingerprint);
   PROBE_ASSIGN(const auto unproven, read_unproven(dir));
   source.unproven.insert(unproven.begin(), unproven.end());
+  PROBE_ASSIGN(source.order, read_order(dir));
   return source;
 }
 
@@ -119,6 +121,33 @@ Status check_same_meaning(const std::vector<Source>& sources, bool mixed_builds,
     notes.push_back(source.dir + ": " + what);
   }
   return {};
+}
+
+// The order of all folders together. Where each task has its own, folders may have other tasks; a
+// task that two of them have, or an order of all tasks, has to be the same, or it is no beginning of
+// an order that stands.
+Result<std::vector<OrderedEpisode>> joined_order(const std::vector<Source>& sources) {
+  std::vector<OrderedEpisode> joined;
+  const bool is_by_task = sources.front().record.identity.until.ends_with(kOfEachTask);
+  std::map<std::string, std::vector<OrderedEpisode>> known;  // by task, or all of them
+  for (const Source& source : sources) {
+    std::map<std::string, std::vector<OrderedEpisode>> here;
+    for (const OrderedEpisode& one : source.order)
+      here[is_by_task ? one.key.task : std::string()].push_back(one);
+    for (auto& [task, order] : here) {
+      const auto [at, is_new] = known.try_emplace(task, order);
+      if (is_new) {
+        joined.insert(joined.end(), order.begin(), order.end());
+      } else if (at->second != order) {
+        return Failure{Fault::kUsage,
+                       (task.empty() ? std::string() : "task `" + task + "`: ") +
+                           "stops by what it finds over other episodes than " +
+                           sources.front().dir + ": they are not parts of one run",
+                       source.dir};
+      }
+    }
+  }
+  return joined;
 }
 
 // What was shown of the servers goes with the rows; a merge made again adds nothing.
@@ -246,6 +275,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
                    options.dirs.front()};
   PROBE_TRY(check_same_run(sources, options.mixed_builds, summary.notes));
   PROBE_TRY(check_same_meaning(sources, options.mixed_builds, summary.notes));
+  PROBE_ASSIGN(const auto order, joined_order(sources));
   AllChosen chosen;
   for (const Source& source : sources) {
     if (auto own = open_run_plan(source.dir); !own) return own.failure();
@@ -269,6 +299,7 @@ Result<MergeSummary> merge(const MergeOptions& options) {
   }
   record.seeds.assign(seeds.begin(), seeds.end());
   PROBE_ASSIGN(auto store, Store::open(options.out, record, plan.bytes()));
+  if (!order.empty()) PROBE_TRY(store->set_order(order));
   PROBE_TRY(take_calls(sources, *store, options.out));
   Taker taker(*store, options.out);
   for (const Source& source : sources) {

@@ -62,6 +62,7 @@ std::string list_cell(const std::optional<std::vector<int>>& numbers) {
 constexpr RareField kRareFields[] = {
     {"live", [](const ResultRow& row) { return row.live; }},
     {"only_success", [](const ResultRow& row) { return std::string(row.only_success ? "true" : ""); }},
+    {"until", [](const ResultRow& row) { return row.until; }},
     {"remark", [](const ResultRow& row) { return row.remark.value_or(""); }},
     {"idle", [](const ResultRow& row) { return steps_cell(row.idle); }},
     {"delay", [](const ResultRow& row) { return steps_cell(row.delay); }},
@@ -131,6 +132,7 @@ std::string RowTexts::json(const ResultRow& row) {
   json["trace"] = row.trace;
   if (!row.live.empty()) json["live"] = row.live;
   if (row.only_success) json["only_success"] = true;
+  if (!row.until.empty()) json["until"] = row.until;
   if (row.remark) json["remark"] = *row.remark;
   if (row.idle != 0) json["idle"] = row.idle;
   if (row.delay != 0) json["delay"] = row.delay;

@@ -56,6 +56,8 @@ struct ResultRow {
   std::string live = {};
   // RunIdentity::only_success of its run. Of read_results.
   bool only_success = false;
+  // RunIdentity::until of its run. Of read_results.
+  std::string until = "";
   bool operator==(const ResultRow&) const = default;
 };
 
@@ -77,7 +79,8 @@ Result<std::size_t> count_rows(const std::string& dir);
 
 // A JSON array of objects with exactly the documented keys; metrics of an invalid episode are null.
 // Behind `trace` stand, where there is something to say, `live`, `only_success` (true where the run
-// stored no other episodes), `remark`, `idle` and `delay`
+// stored no other episodes), `until` (what a run stops by, so that how many rows there are depends on
+// them), `remark`, `idle` and `delay`
 // (control steps), `told_at` (steps, from 1, in which the instruction changed) and `joints`, an object.
 std::string results_to_json(std::span<const ResultRow> rows);
 // The same as comma-separated values with a header line; truths as true/false. What some rows have

@@ -38,9 +38,11 @@ std::string percent(double part, double whole) {
 
 std::string record_to_text(const RunRecord& record) {
   const bool is_live = !record.identity.live.empty();
-  const int schema = record.identity.only_success ? kSelectedSchemaVersion
-                     : is_live                    ? kLiveSchemaVersion
-                                                  : record.schema;
+  const bool is_adaptive = !record.identity.until.empty();
+  const int schema = is_adaptive                    ? kAdaptiveSchemaVersion
+                     : record.identity.only_success ? kSelectedSchemaVersion
+                     : is_live                      ? kLiveSchemaVersion
+                                                    : record.schema;
   Json json = {{"schema", std::to_string(schema)},
                {"plan_root", record.identity.plan_root},
                {"policy", record.identity.policy},
@@ -50,6 +52,7 @@ std::string record_to_text(const RunRecord& record) {
                {"fingerprint", to_json(record.fingerprint)}};
   if (is_live) json["live"] = record.identity.live;
   if (record.identity.only_success) json["only_success"] = true;
+  if (is_adaptive) json["until"] = record.identity.until;
   if (!record.asset_folders.empty()) json["asset_folders"] = record.asset_folders;
   return json.sorted().dump();
 }
@@ -63,9 +66,11 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
   RunRecord record;
   PROBE_ASSIGN(const std::string schema, record_text(json, "schema", where));
   const bool is_selected = schema == std::to_string(kSelectedSchemaVersion);
+  const bool is_adaptive = schema == std::to_string(kAdaptiveSchemaVersion);
   const bool is_live = schema == std::to_string(kLiveSchemaVersion) ||
-                       (is_selected && json.find("live") != nullptr);
-  if (schema != "1" && schema != std::to_string(kSchemaVersion) && !is_live && !is_selected) {
+                       ((is_selected || is_adaptive) && json.find("live") != nullptr);
+  if (schema != "1" && schema != std::to_string(kSchemaVersion) && !is_live && !is_selected &&
+      !is_adaptive) {
     return record_failure(
         "was written by a program with another layout of results (" + schema + ")", where);
   }
@@ -84,6 +89,10 @@ Result<RunRecord> record_from_text(const std::string& text, const std::string& w
     if (kept == nullptr || !kept->is_boolean() || !kept->get<bool>())
       return bad_record("only_success", "true", where);
     record.identity.only_success = true;
+  }
+  if (is_adaptive) {
+    PROBE_ASSIGN(record.identity.until, record_text(json, "until", where));
+    if (record.identity.until.empty()) return bad_record("until", "a text that says when", where);
   }
   PROBE_ASSIGN(record.suite, record_text(json, "suite", where));
   const Json* seeds = json.find("seeds");
@@ -122,6 +131,14 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
   if (there.only_success != here.only_success) {
     changes.identity =
         std::string("holds ") + kept(there.only_success) + ", not " + kept(here.only_success);
+  } else if (there.until != here.until) {
+    const auto ends = [](const std::string& until) {
+      return until.empty() ? std::string("runs all its episodes")
+                           : "stops by `--until` (" + until + ")";
+    };
+    changes.identity = "holds a run that " + ends(there.until) + ", not one that " + ends(here.until);
+    if (here.until.empty())
+      changes.identity += "; `--until none` runs the others and makes it an ordinary one";
   } else if (there.live != here.live) {
     changes.identity = "holds " + kind(there.live) + ", not " + kind(here.live);
   } else if (there.policy != here.policy) {

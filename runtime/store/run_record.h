@@ -18,10 +18,13 @@ namespace probe::store {
 // Raised when the tables or the record change. Version 1 had neither `policy_content` nor calls nor
 // the hashes of what was sent; it is read, and raised to 2 when it is written. A live run's record
 // is of version 3, which programs that know no live runs refuse; that of a folder of successes alone
-// of version 4, which programs refuse that would take it for a policy that never fails.
+// of version 4, which programs refuse that would take it for a policy that never fails; that of a run
+// that stops by what it finds of version 5, which programs refuse whose intervals and tests would be
+// wrong for it.
 inline constexpr int kSchemaVersion = 2;
 inline constexpr int kLiveSchemaVersion = 3;
 inline constexpr int kSelectedSchemaVersion = 4;
+inline constexpr int kAdaptiveSchemaVersion = 5;
 
 // How the content of a policy in this process begins whose rows call it otherwise.
 inline constexpr std::string_view kOwnPolicy = "policy ";
@@ -39,8 +42,14 @@ struct RunIdentity {
   // Only episodes that succeeded are stored (`vlaprobe demos`): of what was done nothing can be
   // told from them.
   bool only_success = false;
+  // How many episodes are run depends on how they end: to_text of its adaptive::Rule. Empty: all that
+  // were chosen are run. Only the beginning of its order (Store::freeze_order) counts.
+  std::string until = "";
   bool operator==(const RunIdentity&) const = default;
 };
+
+// How `until` ends where each task stops by itself, so that its order is its own.
+inline constexpr std::string_view kOfEachTask = "of each task";
 
 struct RunRecord {
   RunIdentity identity;

@@ -21,6 +21,7 @@
 #include "runtime/store/database.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/order_table.h"
 #include "runtime/store/remarks_table.h"
 #include "runtime/store/room.h"
 #include "runtime/store/run_plan.h"
@@ -58,7 +59,8 @@ constexpr Database::Table kTables[] = {{"run", kRunColumns},
                                        {"episodes", kEpisodeColumns},
                                        {"calls", kCallColumns},
                                        {"unproven", kUnprovenColumns},
-                                       {"remarks", kRemarkColumns}};
+                                       {"remarks", kRemarkColumns},
+                                       {"planned", kOrderColumns}};
 
 // What `item` gives for each column, with commas between.
 template <typename Item>
@@ -301,6 +303,7 @@ class RowReader {
     row.sent_image_sha256 = select.optional_text(EpisodeColumn::kSentImageSha);
     row.live = record_.identity.live;
     row.only_success = record_.identity.only_success;
+    row.until = record_.identity.until;
     return row;
   }
 
@@ -389,6 +392,8 @@ class FolderStore final : public Store {
           episode.why = to_text(trace.failure());
         }
       }
+      const auto success = std::ranges::find(row.metrics, "success", &MetricValue::name);
+      episode.success = episode.valid && success != row.metrics.end() && success->value != 0;
       episodes.push_back(std::move(episode));
     }
     return episodes;
@@ -491,6 +496,34 @@ class FolderStore final : public Store {
     });
   }
 
+  Status freeze_order(std::span<const OrderedEpisode> order) override {
+    const std::lock_guard lock(mutex_);
+    PROBE_ASSIGN(const auto there, order_.read());
+    if (there.empty()) return in_one([&]() -> Status { return order_.write(order); });
+    if (std::ranges::equal(there, order)) return {};
+    return failed("was begun over " + std::to_string(there.size()) +
+                      " episodes in an order of theirs, and this call chooses " +
+                      std::to_string(order.size()) +
+                      ", not the same ones: tasks, episodes and seeds of a run with --until stay as "
+                      "they were",
+                  dir_);
+  }
+  Status set_order(std::span<const OrderedEpisode> order) override {
+    const std::lock_guard lock(mutex_);
+    return in_one([&]() -> Status {
+      PROBE_TRY(order_.clear());
+      return order_.write(order);
+    });
+  }
+  Status forget_until() override {
+    const std::lock_guard lock(mutex_);
+    record_.identity.until.clear();
+    return in_one([&]() -> Status {
+      PROBE_TRY(order_.clear());
+      return write_record("update run set value = ? where name = 'record'");
+    });
+  }
+
   Status write_call(const RunCall& call) override {
     const std::lock_guard lock(mutex_);
     return calls_.write(call_to_json(call));
@@ -579,6 +612,7 @@ class FolderStore final : public Store {
   CallsTable calls_{database_};
   UnprovenTable unproven_{database_};
   RemarksTable remarks_{database_};
+  OrderTable order_{database_};
 };
 
 }  // namespace
@@ -637,6 +671,12 @@ Result<std::vector<EpisodeKey>> read_unproven(const std::string& dir) {
   if (!is_there(database_path(dir))) return no_run(dir);
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
   return UnprovenTable(database).valid();
+}
+
+Result<std::vector<OrderedEpisode>> read_order(const std::string& dir) {
+  if (!is_there(database_path(dir))) return no_run(dir);
+  PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kRead));
+  return OrderTable(database).read();
 }
 
 Result<ReadingSummary> read_reading_summary(const std::string& dir) {

@@ -21,6 +21,15 @@ struct StoredEpisode {
   EpisodeKey key;
   bool valid = false;  // an invalid one is run again, and so is one whose trace is not its own
   std::string why;     // it is not valid
+  bool success = false;  // of a valid one: its metric of that name
+};
+
+// An episode at its place in the order of a run that stops by what it finds.
+struct OrderedEpisode {
+  EpisodeKey key;
+  // Of a rule that compares with another run: whether that one succeeded.
+  std::optional<bool> other = {};
+  bool operator==(const OrderedEpisode&) const = default;
 };
 
 // One process writes a folder at a time. Any thread may call any method at any time once episodes()
@@ -79,6 +88,14 @@ class Store {
   // stay, and they are run again as all that are invalid.
   virtual Status invalidate(const std::vector<EpisodeKey>& keys, const std::string& reason) = 0;
 
+  // The order in which the episodes of a run with RunIdentity::until are taken, for good: fails
+  // (kStore) where the folder has another.
+  virtual Status freeze_order(std::span<const OrderedEpisode> order) = 0;
+  // In the place of what is there: what several folders have together.
+  virtual Status set_order(std::span<const OrderedEpisode> order) = 0;
+  // The run is like any other from now on: for when all of its order has a row.
+  virtual Status forget_until() = 0;
+
   // What this call of `run` has done so far; each write replaces the one before.
   virtual Status write_call(const RunCall& call) = 0;
   // A call of another folder, whose rows come here.
@@ -94,6 +111,8 @@ Result<std::vector<RunCall>> read_run_calls(const std::string& dir);
 Result<std::vector<EpisodeKey>> read_unproven(const std::string& dir);
 // What is shown of the policy server of the run in `dir`.
 Result<ReadingSummary> read_reading_summary(const std::string& dir);
+// The order of the run in `dir`; none where it is no run that stops by what it finds.
+Result<std::vector<OrderedEpisode>> read_order(const std::string& dir);
 // The run in `dir`, for readers; fails (kStore) if there is none.
 Result<RunRecord> read_run_record(const std::string& dir);
 std::string plan_path(const std::string& dir);

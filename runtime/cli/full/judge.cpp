@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/adaptive/sampled.h"
 #include "runtime/base/json.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
@@ -275,6 +276,9 @@ int judge_verb(JudgeArguments arguments) {
   if (const auto record = store::read_run_record(arguments.dir);
       record && record->identity.only_success)
     say("{} {}\n", arguments.dir, store::kSuccessesAlone);
+  if (const auto record = store::read_run_record(arguments.dir);
+      record && !record->identity.until.empty())
+    say("{}: {}\n", arguments.dir, adaptive::why_not_fixed(record->identity.until));
   say("{} episodes judged, {} of them invalid\n", judged->rows.size(), judged->invalid);
   if (judged->not_attempted.count() > 0)
     say("{} of them were not attempted: {}\n", judged->not_attempted.count(),

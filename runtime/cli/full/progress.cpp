@@ -25,6 +25,7 @@ void Progress::add(const run::RunProgress& progress) {
   done_ = progress.done;
   skipped_ = progress.skipped;
   total_ = progress.total;
+  is_at_most_ = progress.is_at_most;
   if (progress.row == nullptr) return;
   if (progress.row->invalid) {
     ++(store::is_not_attempted(*progress.row) ? not_attempted_ : invalid_);
@@ -46,7 +47,9 @@ void Progress::add(const run::RunProgress& progress) {
 }
 
 std::string Progress::counts() const {
-  std::string text = fmt::format("{}/{} episodes", finished(), total_);
+  std::string text = is_at_most_
+                         ? fmt::format("{} of at most {} episodes", finished(), total_)
+                         : fmt::format("{}/{} episodes", finished(), total_);
   if (skipped_ > 0) text += fmt::format(" ({} were there)", skipped_);
   if (not_attempted_ > 0) text += fmt::format(", {} not attempted", not_attempted_);
   if (invalid_ > 0) text += fmt::format(", {} invalid", invalid_);
@@ -54,6 +57,8 @@ std::string Progress::counts() const {
 }
 
 std::string Progress::rate_text(const Rate& rate) const {
+  // How many were run depends on how they ended: a count, and no interval of a fixed number.
+  if (is_at_most_) return fmt::format("{} {}/{}", rate.name, rate.count.k, rate.count.n);
   const stats::Interval interval = stats::wilson(rate.count);
   return fmt::format("{} {}/{} {} % [{}]", rate.name, rate.count.k, rate.count.n,
                      decimal_text(100 * rate.count.rate(), 0),
@@ -62,6 +67,7 @@ std::string Progress::rate_text(const Rate& rate) const {
 
 // Episodes that were there cost nothing, so only this call's pace counts.
 std::string Progress::time_left(double now) const {
+  if (is_at_most_) return "";
   const int left = total_ - finished();
   if (left <= 0) return "done in " + duration_text(now - begun_);
   if (done_ == 0) return "";

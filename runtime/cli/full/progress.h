@@ -44,6 +44,7 @@ class Progress {
   std::optional<double> logged_;
   int done_ = 0, skipped_ = 0, total_ = 0, invalid_ = 0, not_attempted_ = 0;
   std::vector<Rate> rates_;  // of this call's valid episodes
+  bool is_at_most_ = false;  // how many there will be depends on how they end
 };
 
 }  // namespace probe::cli

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "runtime/adaptive/sampled.h"
 #include "runtime/ask/answers.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/answer_results.h"
@@ -51,6 +52,11 @@ void print_live(const store::ProvenRun& proven) {
   if (proven.live_terms.empty()) return;
   put("{}\n", proven.live_terms);
   put("live: {}\n", to_text(proven.live));
+}
+
+// Of a run that stops by what it finds: what may be said of its rates.
+void print_until(const adaptive::Summarizer& sums, bool is_long) {
+  for (const std::string& line : adaptive::to_lines(sums.summary(), is_long)) put("{}\n", line);
 }
 
 // How the questions of the folder's calls went, where they went together.
@@ -142,10 +148,15 @@ int rows_verb(const ResultsArguments& arguments) {
 
 // Counts by task.
 int tally_verb(const ResultsArguments& arguments) {
+  const auto until = adaptive::read_adaptive(arguments.dir);
+  if (!until) return report(until.failure());
+  std::optional<adaptive::Summarizer> sums;
+  if (*until) sums.emplace(**until);
   rejudge::TallyText tally;
   std::vector<std::pair<std::string, int>> successes;  // a task's rows stand together
   const auto proven = store::for_each_proven_row(arguments.dir, [&](store::ResultRow&& row) {
     tally.add(row);
+    if (sums) sums->add(row);
     if (successes.empty() || successes.back().first != row.task) successes.push_back({row.task, 0});
     if (!row.invalid) ++successes.back().second;
     return Status();
@@ -158,6 +169,7 @@ int tally_verb(const ResultsArguments& arguments) {
   }
   const auto plan = rejudge::stored_plan(arguments.dir);
   put("{}", tally.text(plan ? &*plan : nullptr, arguments.is_long));
+  if (sums) print_until(*sums, arguments.is_long);
   print_live(*proven);
   print_readings(arguments.dir);
   return exit;

@@ -17,7 +17,7 @@ namespace {
 
 struct CallArguments {
   RunArguments run;
-  std::string shard = "1/1", watch;
+  std::string shard = "1/1", watch, until;
 };
 
 int run_verb(const CallArguments& arguments) {
@@ -25,6 +25,13 @@ int run_verb(const CallArguments& arguments) {
   if (!options) return report(options.failure());
   const auto shard = parse_shard(arguments.shard);
   if (!shard) return report(shard.failure());
+  if (arguments.until == "none") {
+    options->drops_until = true;
+  } else if (!arguments.until.empty()) {
+    auto rule = adaptive::parse_rule(arguments.until);
+    if (!rule) return report(rule.failure());
+    options->until = std::move(*rule);
+  }
   options->shard = shard->first;
   options->shards = shard->second;
   if (auto actor = run::choose_actor(*options); !actor) return report(actor.failure());
@@ -61,6 +68,9 @@ void add_run(Verb app, int& exit) {
               "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
   add_run_options(verb, arguments->run);
   verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them. @I/N: I counted from 0");
+  verb.add_option("--until", arguments->until,
+                  "stop early, errors holding all the same: \"width 10%\" of each task, \"width 5% of "
+                  "all\", \"decided-against DIR\"; none: run what such a run left");
   verb.add_option("--watch", arguments->watch,
                   "PORT of a page on this machine that follows the run; 0: any free one");
   verb.refuse_empty_values();

@@ -178,8 +178,10 @@ void print_invalid(const store::ResultRow& row) {
 void print_summary(const run::RunSummary& summary) {
   for (const std::string& note : summary.notes) say("note: {}\n", note);
   if (summary.total == 0) return;
-  say("{} episodes in {}: {} run now, {} were there, {} invalid\n", summary.total, summary.out,
-      summary.done, summary.skipped, summary.invalid);
+  say("{}{} episodes in {}: {} run now, {} were there, {} invalid\n",
+      summary.until.empty() ? "" : "at most ", summary.total, summary.out, summary.done,
+      summary.skipped, summary.invalid);
+  for (const std::string& line : summary.until) say("{}\n", line);
   if (summary.not_attempted.count() > 0)
     say("{} of them were not attempted: {}\n", summary.not_attempted.count(),
         store::to_text(summary.not_attempted));

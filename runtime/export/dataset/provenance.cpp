@@ -42,11 +42,14 @@ Json dataset_json(const Provenance::Facts& facts, const Contents& contents) {
       facts.rephrase_sha256.empty() ? Json(nullptr) : Json(facts.rephrase_sha256);
   json["wordings"] = facts.options.wordings;
   json["runs"] = Json::array();
-  for (const Source& source : facts.sources)
-    json["runs"].push_back({{"dir", source.dir},
-                            {"policy", source.policy},
-                            {"plan_root", to_hex(source.plan.root())},
-                            {"episodes", source.rows.size()}});
+  for (const Source& source : facts.sources) {
+    Json run = {{"dir", source.dir},
+                {"policy", source.policy},
+                {"plan_root", to_hex(source.plan.root())},
+                {"episodes", source.rows.size()}};
+    if (!source.until.empty()) run["until"] = source.until;
+    json["runs"].push_back(std::move(run));
+  }
   return json;
 }
 
@@ -74,6 +77,12 @@ std::string readme(const Provenance::Facts& facts, const Contents& contents,
   for (const Source& source : facts.sources)
     text += fmt::format("| `{}` | `{}` | `{}` | {} |\n", source.dir, source.policy,
                         to_hex(source.plan.root()), source.rows.size());
+  for (const Source& source : facts.sources) {
+    if (!source.until.empty())
+      text += fmt::format("\n`{}` was run with `--until` ({}): how many episodes it has depends on how "
+                          "they ended.\n",
+                          source.dir, source.until);
+  }
   text += "\n`" + std::string(kDemonstrationsPath) +
           "` has each demonstration's task, start, seed, trace, wordings and metrics; `vlaprobe "
           "export --check DIR` holds the dataset against the traces.\n\n## Left out\n\n";

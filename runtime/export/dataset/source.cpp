@@ -188,7 +188,8 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
   PROBE_ASSIGN(plan::Plan plan, store::open_run_plan(dir));
   PROBE_ASSIGN(const auto rows, store::read_results(dir));
-  Source source{dir, record.identity.policy, is_pushed(record.identity), std::move(plan), {}, {}};
+  Source source{dir, record.identity.policy, is_pushed(record.identity), std::move(plan), {}, {},
+                record.identity.until};
   std::map<std::string, std::pair<std::size_t, std::string>> invalid;  // by reason: how many, first
   std::map<std::string, std::size_t> late;                             // by reason
   std::size_t failed = 0, empty = 0, again = 0;

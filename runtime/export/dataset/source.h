@@ -24,6 +24,8 @@ struct Source {
   plan::Plan plan;
   std::vector<store::ResultRow> rows;  // those that are wanted, in the stored order
   std::vector<std::uint32_t> tasks;    // of these rows, ascending
+  // store::RunIdentity::until: how many episodes there are depends on how they ended.
+  std::string until = {};
 };
 
 bool is_success(const store::ResultRow& row);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,10 @@ struct FakeRunOptions {
   std::vector<int> seeds = {42};
   std::string content = "";  // RunIdentity::policy_content
   bool only_success = false;
+  // Of a run that stops by what it finds: only the first places of its order have rows.
+  std::string until = "";
+  std::vector<store::OrderedEpisode> order = {};
+  std::size_t run = 0;
 };
 
 // Makes DIR with a row for every task, start and seed.
@@ -66,17 +71,22 @@ inline void fake_run(const std::string& dir, const plan::Plan& plan, const std::
   record.identity.policy = policy;
   record.identity.policy_content = options.content;
   record.identity.only_success = options.only_success;
+  record.identity.until = options.until;
   record.suite = plan.text(plan.suites()[0].name);
   record.seeds = options.seeds;
   record.fingerprint.entries = {{"cpu", "test"}};
   auto store = store::Store::open(dir, record, plan.bytes());
   REQUIRE_MESSAGE(store.ok(), to_text(store.failure()));
+  std::set<store::EpisodeKey> ran;
+  for (std::size_t i = 0; i < options.run; ++i) ran.insert(options.order[i].key);
+  if (!options.until.empty()) REQUIRE((*store)->freeze_order(options.order).ok());
   for (const std::string& name : options.tasks) {
     const auto task = plan.find_task(name);
     REQUIRE(task);
     const plan::TaskRecord& of_plan = plan.tasks()[*task];
     for (int episode = options.first; episode <= options.last; ++episode) {
       for (const int seed : options.seeds) {
+        if (!options.until.empty() && !ran.contains({name, episode, seed})) continue;
         const Outcome outcome = script(name, episode, seed);
         store::ResultRow row;
         row.task = name;

@@ -34,6 +34,29 @@ TEST_CASE(
   CHECK(summarize_readings({later}, 7).findings[0].starts_with("7 episodes "));
 }
 
+TEST_CASE("a run that stops by what it finds says so, and another rule is another run") {
+  const RunRecord run = run_of("aa", "1f", "c0");
+  RunRecord until = run;
+  until.identity.until = "width 10 % of each task";
+  const std::string text = record_to_text(until);
+  CHECK(text.find(R"("schema":"5")") != std::string::npos);
+  CHECK(record_from_text(text, "x").value().identity == until.identity);
+  RunRecord live = until;
+  live.identity.live = "live, 80 ms, at most 90 % held";
+  CHECK(record_from_text(record_to_text(live), "x").value().identity == live.identity);
+  std::string without = text;
+  without.replace(without.find("\"until\":"), 8, "\"un_til\":");
+  CHECK(record_from_text(without, "x").failure().message.find("until") != std::string::npos);
+  CHECK(changes_between(until, run).identity ==
+        "holds a run that stops by `--until` (width 10 % of each task), not one that runs all its "
+        "episodes; `--until none` runs the others and makes it an ordinary one");
+  RunRecord other = until;
+  other.identity.until = "width 5 % of each task";
+  CHECK(changes_between(until, other).identity.find("(width 5 % of each task)") != std::string::npos);
+  CHECK(changes_between(run, until).identity.find("runs all its episodes, not one") !=
+        std::string::npos);
+}
+
 TEST_CASE("a folder of successes says so, and older programs do not take it for a run") {
   RunRecord run = run_of("aa", "1f", "c0"), demos = run;
   demos.identity.only_success = true;

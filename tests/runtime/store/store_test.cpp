@@ -565,5 +565,32 @@ TEST_CASE("a metric that is called as a field of its row takes no other's place"
   CHECK(columns.contains("metric.task"));
 }
 
+TEST_CASE("the order of a run that stops by what it finds is frozen, and goes with its rule") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  RunRecord record = record_of();
+  record.identity.until = "width 10 % of each task";
+  const std::vector<OrderedEpisode> order = {
+      {{"carrot_on_plate", 1, 42}, true}, {{"carrot_on_plate", 0, 42}, false}, {{"a; b", 0, -1}, {}}};
+  {
+    auto store = Store::open(dir, record, plan_bytes());
+    REQUIRE(store.ok());
+    CHECK((*store)->freeze_order(order).ok());
+    CHECK((*store)->freeze_order(order).ok());
+    const auto other = (*store)->freeze_order(std::span(order).first(2));
+    REQUIRE_FALSE(other.ok());
+    CHECK(other.failure().message.find("was begun over 3 episodes") != std::string::npos);
+  }
+  CHECK(*read_order(dir) == order);
+  CHECK(read_run_record(dir)->identity.until == record.identity.until);
+  {
+    auto store = Store::open(dir, record, plan_bytes());
+    REQUIRE((*store)->forget_until().ok());
+  }
+  CHECK(read_order(dir)->empty());
+  CHECK(read_run_record(dir)->identity.until.empty());
+  CHECK(Store::open(dir, record_of(), plan_bytes()).ok());
+}
+
 }  // namespace
 }  // namespace probe::store

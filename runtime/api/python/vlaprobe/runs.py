@@ -64,6 +64,8 @@ class Results(list):
     Attributes:
         policy, plan_root, suite: what the run is of.
         only_success: whether only episodes that succeeded were kept (``vlaprobe demos``), so that nothing is a rate.
+        until: what the run stops by (``vlaprobe run --until``), so that how many rows there are depends on them: intervals and
+            tests of a fixed number of episodes do not hold, those of ``vlaprobe results`` do. Empty: all episodes were run.
         refused: sentences, one an episode whose trace does not bear its row; such rows are not here.
     """
 
@@ -73,6 +75,7 @@ class Results(list):
         self.plan_root: str = told["plan_root"]
         self.suite: str = told["suite"]
         self.only_success: bool = any(row.get("only_success", False) for row in self)
+        self.until: str = told.get("until", "")
         self.refused: list[str] = told["refused"]
 
     @property
@@ -131,6 +134,8 @@ class Results(list):
             f"<tr><td>{html.escape(task)}</td><td>{yes} of {count}</td></tr>" for task, (yes, count) in counts.items()
         )
         note = f"<p>not counted: {', '.join(self._uncounted())}</p>" if len(self.valid) < len(self) else ""
+        if self.until:
+            note += f"<p>stops by {html.escape(self.until)}: counts, not rates of all</p>"
         return f"<p>{html.escape(self.policy)}</p><table><tr><th>task</th><th>success</th></tr>{rows}</table>{note}"
 
 

@@ -11,7 +11,7 @@ export function fixed(x: number, digits: number): string {
   return (x < 0 && size > 0 ? -size : size).toFixed(digits);
 }
 
-export const rate = (e: Estimate): number | null => (e && e[1] > 0 ? e[0] / e[1] : null);
+export const rate = (e: Estimate): number | null => (e && e[1] > 0 ? e[4] ?? e[0] / e[1] : null);
 export const percent = (x: number | null | undefined, digits = 0): string =>
   x === null || x === undefined || Number.isNaN(x) ? kNone : fixed(100 * x, digits);
 export const withUnit = (x: number | null, digits = 0): string => (x === null ? kNone : `${percent(x, digits)} %`);

@@ -1,7 +1,8 @@
 // The documents that stand in the page, as PAGE_DATA.md describes them. What is missing is empty; nothing here computes a
 // statistic.
 
-export type Estimate = [k: number, n: number, low: number, high: number] | null;
+// rate: where it is not k / n, because unlike shares of tasks were run.
+export type Estimate = [k: number, n: number, low: number, high: number, rate?: number] | null;
 export type Level = "good" | "note" | "warn" | "bad";
 export interface Note { level: Level; text: string; see?: string }
 export interface Metric { name: string; label: string; truth: boolean; good: number }

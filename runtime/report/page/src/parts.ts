@@ -38,7 +38,7 @@ export function estimateCell(e: Estimate, digits = 0): Child[] {
 }
 
 export function track(e: NonNullable<Estimate>): SVGElement {
-  const middle = (100 * e[0]) / Math.max(e[1], 1);
+  const middle = 100 * (rate(e) ?? 0);
   return s("svg", { class: "track", viewBox: "0 0 100 6", preserveAspectRatio: "none", "aria-hidden": "true" },
     s("rect", { class: "ground", x: 0, y: 2.5, width: 100, height: 1 }),
     s("rect", { class: "span", x: 100 * e[2], y: 1.5, width: Math.max(1, 100 * (e[3] - e[2])), height: 3 }),
