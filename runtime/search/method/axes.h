@@ -42,10 +42,13 @@ struct AxisEffect {
   // The part of the axis that fails more, best seen, and how often failure is seen there and not.
   Side side;
   stats::Count there, elsewhere;
-  // Sobol's index of first order: what this axis alone explains of the variance of the outcome, in
-  // 0..1. One trial a point has chance in it, so the indices of a policy that fails by chance add
-  // up to less than 1. `total` adds the share of every pair that is named. An axis counts by eight
-  // equal parts, and what lies within a part is not seen. 95 % intervals.
+  // Sobol's index of first order: what this axis, cut into its parts (eight equal ones where it is
+  // continuous), explains of the variance of the outcome, 0..1. It is at most the index of the axis
+  // itself: where a threshold lies in the middle of a part, about a seventh is missing, and of what
+  // two such axes share about a quarter. One trial a point has chance in it, so the indices of a
+  // policy that fails by chance add up to less than 1. `total` adds the share of the pairs that are
+  // named, and lacks that of a pair that was missed. The 95 % intervals are those of the indices of
+  // the parts, not of the axis itself, which they may lie below.
   double first = 0, total = 0;
   stats::Interval first_interval, total_interval;
 };

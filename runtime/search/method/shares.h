@@ -24,10 +24,10 @@ struct Shares {
   std::vector<double> pairs;  // beyond what the two explain alone, 0..1
 };
 
-// Sobol's indices of first order by epsilon squared (Kelley 1935, PNAS 21:554), (between -
-// (groups - 1) within) / total, which chance alone does not raise; a pair's in the same way, less
-// those of its two; the total of an axis with those of `pairs` that it is in. Intervals of 95 % by
-// resampling trials.
+// Of axes that are cut into `parts`: Sobol's indices of first order by epsilon squared (Kelley
+// 1935, PNAS 21:554), (between - (groups - 1) within) / total, which chance alone does not raise; a
+// pair's in the same way, less those of its two; the total of an axis with those of `pairs` that it
+// is in. Intervals of 95 % by resampling trials.
 Shares shares_of(const std::vector<Parts>& parts, const std::vector<AxisPair>& pairs,
                  const std::vector<std::uint8_t>& failed, int resamples, Draws draws);
 
