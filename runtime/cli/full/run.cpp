@@ -65,12 +65,13 @@ void add_run(Verb app, int& exit) {
   auto arguments = std::make_shared<CallArguments>();
   Verb verb = app.add_subcommand("run", "evaluate a policy; the same command again continues");
   verb.footer("policies:\n" + run::policy_help() +
-              "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert");
+              "\nexample: vlaprobe run suite/intact.probe --policy expert --jobs 2 -o runs/expert\n"
+              "         vlaprobe run suite/intact.probe --policy P -o runs/p --until \"width 10%\"");
   add_run_options(verb, arguments->run);
   verb.add_option("--shard", arguments->shard, "I/N: this call's share; `merge` joins them. @I/N: I counted from 0");
   verb.add_option("--until", arguments->until,
-                  "stop early, errors holding all the same: \"width 10%\" of each task, \"width 5% of "
-                  "all\", \"decided-against DIR\"; none: run what such a run left");
+                  "when to stop early: \"width 10%\", \"width 5% of all\", \"decided-against DIR\"; "
+                  "none: run the rest");
   verb.add_option("--watch", arguments->watch,
                   "PORT of a page on this machine that follows the run; 0: any free one");
   verb.refuse_empty_values();

@@ -79,6 +79,26 @@ TEST_CASE("a plan with one flipped byte is refused before anything runs") {
   CHECK_FALSE(fs::exists(box / "out"));
 }
 
+TEST_CASE("a rule that no run stops by is refused with the rules there are, and leaves nothing behind") {
+  Sandbox box;
+  for (const char* rule : {"width 0%", "width 100%", "width", "until it is good", "decided-against"}) {
+    const Outcome outcome =
+        box.vlaprobe("run $SUITE --policy null -o out --until \"" + std::string(rule) + "\"");
+    CHECK(outcome.exit == 1);
+    CHECK(contains(outcome.err, std::string("--until `") + rule + "`"));
+    CHECK(contains(outcome.err, "\"width 10%\""));
+  }
+  const Outcome nowhere =
+      box.vlaprobe("run $SUITE --policy null -o out --until \"decided-against nowhere\"");
+  CHECK(nowhere.exit == 1);
+  CHECK(contains(nowhere.err, "nowhere: no run here"));
+  const Outcome shard =
+      box.vlaprobe("run $SUITE --policy null -o out --shard 1/2 --until \"width 5% of all\"");
+  CHECK(shard.exit == 1);
+  CHECK(contains(shard.err, "one order of all episodes"));
+  CHECK_FALSE(fs::exists(box / "out"));
+}
+
 TEST_CASE("a URDF without the named link is an error at the name") {
   Sandbox box;
   copy_suite(box, "stage.probe", "tcp ee_gripper_link", "tcp ee_griper_link");

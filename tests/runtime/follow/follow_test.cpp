@@ -54,6 +54,24 @@ TEST_CASE("a folder that is not there yet has no rows, and a run of it is seen w
   CHECK(to_json(seen)["newest_failures"].size() == seen.newest.size());
 }
 
+TEST_CASE("of a run that stops by what it finds counts are told, and no interval of a fixed number") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  RunOptions options = options_for(dir);
+  options.until = *adaptive::parse_rule("width 20% of all");
+  REQUIRE(run::run(table_plan(24, 2), options).ok());
+  Following following(dir);
+  const Seen seen = looked(following, 5);
+  CHECK(seen.until == "width 20 % of all tasks");
+  CHECK(seen.rows < 24);
+  CHECK(seen.is_done());
+  const Json json = to_json(seen);
+  CHECK(json.at("rates")[0].find("low") == nullptr);
+  const std::vector<std::string> lines = to_lines(seen);
+  CHECK(lines[1].find("stops by width 20 % of all tasks; `vlaprobe results ") != std::string::npos);
+  for (const std::string& line : lines) CHECK(line.find("[") == std::string::npos);
+}
+
 TEST_CASE("shards count together, and those that have not begun are scaled up") {
   TemporaryFolder folder;
   const plan::Plan plan = table_plan(4, 6);

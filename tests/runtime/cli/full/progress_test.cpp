@@ -42,6 +42,16 @@ TEST_CASE("what does not fit a narrow terminal is left out from the right, then 
   CHECK(progress.terminal_line(1060, 10, false) == "30/120 epi");
 }
 
+TEST_CASE("of a run that stops by what it finds there are counts, and no interval or time left") {
+  Progress progress(1000);
+  progress.add({0, 0, 120, nullptr, true});
+  const store::ResultRow one = row(true, true);
+  progress.add({1, 0, 120, &one, true});
+  CHECK(progress.terminal_line(1060, 200, false) ==
+        "[                    ] 1 of at most 120 episodes  success 1/1  intention 1/1");
+  CHECK(progress.log_line(1060) == "1 of at most 120 episodes, success 1/1, intention 1/1");
+}
+
 TEST_CASE("what a policy does not attempt is not called invalid") {
   Progress progress = quarter_done();
   store::ResultRow one = row(false, false);
