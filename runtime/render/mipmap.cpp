@@ -11,12 +11,33 @@ namespace {
 
 using Word = std::uint32_t __attribute__((may_alias));  // four bytes of a texel: red lowest
 
-// Between the four texels about places of a level; texel centres lie at + 0.5.
-PROBE_CLONES void bilinear(const std::uint8_t* rgba, int width, int height,
-                           const float* __restrict u, const float* __restrict v, std::size_t count,
-                           float* __restrict red, float* __restrict green, float* __restrict blue) {
-  const Word* const texels = reinterpret_cast<const Word*>(rgba);
+// A texture's sizes: the first, and all others one after another.
+struct Sizes {
+  const Word *first, *others;
+  const std::int32_t* offset;  // among the others, by size
+  int width, height;           // of the first, each other size being half of the one before
+};
+
+// Between the four texels about places, each in a size of its own; texel centres lie at + 0.5.
+// `kIn`: places are in the first size, in others, or in any. Inlined, so that clones have loops of
+// their own.
+enum class In : std::uint8_t { kFirst, kOthers, kAny };
+template <In kIn>
+[[gnu::always_inline]] inline void bilinear(const Sizes& of, const std::int32_t* __restrict size,
+                                            const float* __restrict u, const float* __restrict v,
+                                            std::size_t count, float* __restrict red,
+                                            float* __restrict green, float* __restrict blue) {
+  const Word* const first = of.first;
+  const Word* const others = of.others;
+  const std::int32_t* const offsets = of.offset;
+  const int all_width = of.width, all_height = of.height;
+  PROBE_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t at = kIn == In::kFirst ? 0 : size[i];
+    const int halved_width = all_width >> at, halved_height = all_height >> at;
+    const int width = halved_width < 1 ? 1 : halved_width;
+    const int height = halved_height < 1 ? 1 : halved_height;
+    const int offset = kIn == In::kFirst ? 0 : offsets[at];
     const float x = (u[i] - std::floor(u[i])) * static_cast<float>(width) - 0.5f;
     const float y = (v[i] - std::floor(v[i])) * static_cast<float>(height) - 0.5f;
     const float floor_x = std::floor(x), floor_y = std::floor(y);
@@ -25,12 +46,19 @@ PROBE_CLONES void bilinear(const std::uint8_t* rgba, int width, int height,
     const int x0 = left < 0 ? left + width : left, y0 = top < 0 ? top + height : top;
     const int x1 = left + 1 >= width ? left + 1 - width : left + 1;
     const int y1 = top + 1 >= height ? top + 1 - height : top + 1;
-    const std::uint32_t upper_left = texels[y0 * width + x0], lower_left = texels[y1 * width + x0];
-    const std::uint32_t upper_right = texels[y0 * width + x1],
-                        lower_right = texels[y1 * width + x1];
+    const auto texel = [&](int index) -> std::uint32_t {
+      if constexpr (kIn == In::kFirst) return first[index];
+      if constexpr (kIn == In::kOthers) return others[index];
+      const std::uint32_t in_first = first[at == 0 ? index : 0];
+      const std::uint32_t in_others = others[at == 0 ? 0 : index];
+      return at == 0 ? in_first : in_others;
+    };
+    const int upper = offset + y0 * width, lower = offset + y1 * width;
+    const std::uint32_t upper_left = texel(upper + x0), lower_left = texel(lower + x0);
+    const std::uint32_t upper_right = texel(upper + x1), lower_right = texel(lower + x1);
     const auto between = [&](int shift) {
-      const auto byte = [&](std::uint32_t texel) {
-        return static_cast<float>(static_cast<std::int32_t>(texel >> shift & 255u));
+      const auto byte = [&](std::uint32_t four) {
+        return static_cast<float>(static_cast<std::int32_t>(four >> shift & 255u));
       };
       const float on_left = byte(upper_left) * (1 - down) + byte(lower_left) * down;
       const float on_right = byte(upper_right) * (1 - down) + byte(lower_right) * down;
@@ -42,9 +70,27 @@ PROBE_CLONES void bilinear(const std::uint8_t* rgba, int width, int height,
   }
 }
 
+PROBE_CLONES void read_first(const Sizes& of, const std::int32_t* size, const float* u,
+                             const float* v, std::size_t count, float* red, float* green,
+                             float* blue) {
+  bilinear<In::kFirst>(of, size, u, v, count, red, green, blue);
+}
+PROBE_CLONES void read_others(const Sizes& of, const std::int32_t* size, const float* u,
+                              const float* v, std::size_t count, float* red, float* green,
+                              float* blue) {
+  bilinear<In::kOthers>(of, size, u, v, count, red, green, blue);
+}
+PROBE_CLONES void read_any(const Sizes& of, const std::int32_t* size, const float* u,
+                           const float* v, std::size_t count, float* red, float* green,
+                           float* blue) {
+  bilinear<In::kAny>(of, size, u, v, count, red, green, blue);
+}
+
+// In a texture of one size.
 inline Rgb bilinear(const std::uint8_t* rgba, int width, int height, float u, float v) {
   float red, green, blue;
-  bilinear(rgba, width, height, &u, &v, 1, &red, &green, &blue);
+  const Sizes only{reinterpret_cast<const Word*>(rgba), nullptr, nullptr, width, height};
+  read_first(only, nullptr, &u, &v, 1, &red, &green, &blue);
   return Rgb{red, green, blue, 0};
 }
 
@@ -60,25 +106,31 @@ inline float log2_of(float x) {
 }  // namespace
 
 MipChain::MipChain(const scene::Texture& texture) {
-  levels_.push_back({texture.width, texture.height, texture.rgba.data(), {}});
+  levels_.push_back({texture.width, texture.height, texture.rgba.data()});
+  offsets_.push_back(0);
+  std::size_t texels = 0;
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     const Level& from = levels_.back();
-    Level to;
-    to.width = std::max(1, from.width / 2);
-    to.height = std::max(1, from.height / 2);
-    to.own.resize(std::size_t{4} * static_cast<std::size_t>(to.width * to.height));
+    const Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), nullptr};
+    offsets_.push_back(static_cast<std::int32_t>(texels));
+    texels += static_cast<std::size_t>(to.width) * static_cast<std::size_t>(to.height);
+    levels_.push_back(to);
+  }
+  own_.resize(4 * texels);
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    const Level& from = levels_[level - 1];
+    Level& to = levels_[level];
+    std::uint8_t* texel = own_.data() + 4 * static_cast<std::size_t>(offsets_[level]);
+    to.rgba = texel;
     for (int y = 0; y < to.height; ++y) {
-      for (int x = 0; x < to.width; ++x) {
+      for (int x = 0; x < to.width; ++x, texel += 4) {
         const Rgb mean = bilinear(from.rgba, from.width, from.height,
                                   (static_cast<float>(x) + 0.5f) / static_cast<float>(to.width),
                                   (static_cast<float>(y) + 0.5f) / static_cast<float>(to.height));
-        std::uint8_t* texel = to.own.data() + 4 * (y * to.width + x);
         for (int k = 0; k < 3; ++k) texel[k] = static_cast<std::uint8_t>(mean[k] + 0.5f);
         texel[3] = 255;
       }
     }
-    to.rgba = to.own.data();  // a vector's bytes stay where they are when it is moved
-    levels_.push_back(std::move(to));
   }
 }
 
@@ -92,12 +144,20 @@ namespace {
 
 constexpr std::size_t kBlockPlaces = 256;
 
+struct Found {
+  std::int32_t least, greatest;  // size
+  bool is_between;               // some place lies between two
+};
+
 // Places kept near enough, and the level each is read at: whole levels, and what is beyond.
-PROBE_CLONES void find_levels(const float* __restrict u, const float* __restrict v,
-                              const float* __restrict texels, std::size_t count, float last,
-                              float* __restrict near_u, float* __restrict near_v,
-                              std::int32_t* __restrict fine, float* __restrict toward) {
+PROBE_CLONES Found find_levels(const float* __restrict u, const float* __restrict v,
+                               const float* __restrict texels, std::size_t count,
+                               std::int32_t last_level, float* __restrict near_u,
+                               float* __restrict near_v, std::int32_t* __restrict fine,
+                               float* __restrict toward) {
   constexpr float kFar = 1e6f;  // beyond it a float has no fraction
+  const auto last = static_cast<float>(last_level);
+  std::int32_t lowest = last_level, highest = 0, between = 0;
   for (std::size_t i = 0; i < count; ++i) {
     near_u[i] = u[i] < -kFar ? -kFar : (kFar < u[i] ? kFar : u[i]);
     near_v[i] = v[i] < -kFar ? -kFar : (kFar < v[i] ? kFar : v[i]);
@@ -105,6 +165,18 @@ PROBE_CLONES void find_levels(const float* __restrict u, const float* __restrict
     const float level = texels[i] > 1 ? (last < by_size ? last : by_size) : 0;
     fine[i] = static_cast<std::int32_t>(level);
     toward[i] = level - static_cast<float>(fine[i]);
+    lowest = fine[i] < lowest ? fine[i] : lowest;
+    highest = fine[i] > highest ? fine[i] : highest;
+    between |= toward[i] > 0 ? 1 : 0;
+  }
+  return {lowest, highest, between != 0};
+}
+
+PROBE_CLONES void mix(const float* __restrict there, const float* __restrict toward,
+                      std::size_t count, float* __restrict color) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float here = color[i];
+    color[i] = toward[i] > 0 ? here * (1 - toward[i]) + there[i] * toward[i] : here;
   }
 }
 
@@ -123,37 +195,23 @@ void MipChain::read_block(const float* u, const float* v, const float* texels, s
   using Block = std::array<float, kBlockPlaces>;
   Block near_u, near_v, toward;
   std::array<std::int32_t, kBlockPlaces> fine;
-  find_levels(u, v, texels, count, static_cast<float>(levels_.size() - 1), near_u.data(),
-              near_v.data(), fine.data(), toward.data());
-  const auto [least_level, greatest_level] = std::minmax_element(fine.data(), fine.data() + count);
-  for (std::int32_t level = *least_level, end = *greatest_level; level <= end; ++level) {
-    std::array<std::uint16_t, kBlockPlaces> which;
-    std::size_t of_level = 0;
-    Block at_u, at_v;
-    bool between = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (fine[i] != level) continue;
-      which[of_level] = static_cast<std::uint16_t>(i);
-      at_u[of_level] = near_u[i];
-      at_v[of_level++] = near_v[i];
-      between = between || toward[i] > 0;
-    }
-    if (of_level == 0) continue;
-    std::array<Block, 3> here, there;
-    const auto look = [&](const Level& from, std::array<Block, 3>& to) {
-      bilinear(from.rgba, from.width, from.height, at_u.data(), at_v.data(), of_level, to[0].data(),
-               to[1].data(), to[2].data());
-    };
-    look(levels_[static_cast<std::size_t>(level)], here);
-    if (between) look(levels_[static_cast<std::size_t>(level) + 1], there);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t n = 0; n < of_level; ++n) {
-        const std::size_t i = which[n];
-        color[k][i] =
-            toward[i] > 0 ? here[k][n] * (1 - toward[i]) + there[k][n] * toward[i] : here[k][n];
-      }
-    }
-  }
+  const Found found =
+      find_levels(u, v, texels, count, static_cast<std::int32_t>(levels_.size() - 1), near_u.data(),
+                  near_v.data(), fine.data(), toward.data());
+  const Sizes sizes{reinterpret_cast<const Word*>(levels_[0].rgba),
+                    reinterpret_cast<const Word*>(own_.data()), offsets_.data(), levels_[0].width,
+                    levels_[0].height};
+  const auto read = found.greatest == 0 ? read_first : found.least > 0 ? read_others : read_any;
+  read(sizes, fine.data(), near_u.data(), near_v.data(), count, color[0], color[1], color[2]);
+  if (!found.is_between) return;
+  // The next size, and the last again where there is none.
+  std::array<std::int32_t, kBlockPlaces> coarse;
+  const auto last = static_cast<std::int32_t>(levels_.size() - 1);
+  for (std::size_t i = 0; i < count; ++i) coarse[i] = std::min(fine[i] + 1, last);
+  std::array<Block, 3> there;
+  read_others(sizes, coarse.data(), near_u.data(), near_v.data(), count, there[0].data(),
+              there[1].data(), there[2].data());
+  for (std::size_t k = 0; k < 3; ++k) mix(there[k].data(), toward.data(), count, color[k]);
 }
 
 }  // namespace probe::render

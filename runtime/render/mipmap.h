@@ -30,11 +30,12 @@ class MipChain {
   struct Level {
     int width = 0, height = 0;
     const std::uint8_t* rgba = nullptr;
-    std::vector<std::uint8_t> own;
   };
   void read_block(const float* u, const float* v, const float* texels, std::size_t count,
                   const std::array<float*, 3>& color) const;
   std::vector<Level> levels_;
+  std::vector<std::uint8_t> own_;      // all sizes but the first, which is the texture's
+  std::vector<std::int32_t> offsets_;  // of sizes in own_, texels; 0 of the first
 };
 
 }  // namespace probe::render

@@ -47,6 +47,9 @@ class PlacedMeshes {
     float share = 0;                               // of colours that it gives back
     std::uint32_t first_id = 0, end_id = 0;        // of its triangles
     int left = 0, right = 0, top = 0, bottom = 0;  // the last ones too
+    bool may_be_at(int x, int y) const {
+      return left <= x && x <= right && top <= y && y <= bottom;
+    }
     bool holds(std::uint32_t id) const { return first_id <= id && id < end_id; }
     // Of a pixel's four samples.
     bool is_in(const std::uint32_t* ids) const {
@@ -102,6 +105,8 @@ class PlacedMeshes {
   // Of a pixel's middle.
   float across(int x) const { return across_[static_cast<std::size_t>(x)]; }
   float down(int y) const { return down_[static_cast<std::size_t>(y)]; }
+  // Of pixels of a row, from that one on.
+  const float* across_from(int x) const { return &across_[static_cast<std::size_t>(x)]; }
   // How far a step of a pixel goes.
   float step_across() const { return step_across_; }
   float step_down() const { return step_down_; }

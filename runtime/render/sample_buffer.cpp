@@ -160,14 +160,25 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
     slope_y += along_y[i] * share;
     level += constant[i] * share;
   }
+  // Edges are sums of whole numbers below 2^53 then, and many steps of them are one.
+  constexpr std::int32_t kExact = 1 << 24;
+  bool is_exact = true;
+  for (int i = 0; i < 3; ++i)
+    is_exact = is_exact && std::abs(c[i].x) < kExact && std::abs(c[i].y) < kExact;
   Doubles offset[3];
   for (int i = 0; i < 3; ++i) offset[i] = along_x[i] * fx + along_y[i] * fy;
+  // The least that a sample adds to an edge's value at its pixel's corner.
+  double least_offset[3];
+  for (int i = 0; i < 3; ++i)
+    least_offset[i] = std::min({offset[i][0], offset[i][1], offset[i][2], offset[i][3]});
   const Floats lean = __builtin_convertvector(slope_x * fx + slope_y * fy, Floats);
   const double greatest_lean = std::max({lean[0], lean[1], lean[2], lean[3]});
   for (int py = in.top; py <= in.bottom; ++py) {
     // Where along the row all edges can be met by some sample, with a pixel of room.
     const double y = static_cast<double>(py) * kSubpixels;
     double first = in.left, last = in.right;
+    // And where all samples are inside, with a pixel less.
+    double inner_first = in.left, inner_last = in.right;
     double row[3];
     for (int i = 0; i < 3; ++i) {
       row[i] = constant[i] + along_y[i] * y;
@@ -176,9 +187,16 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
       if (step > 0) first = std::max(first, (-row[i] - reach) / step - 1);
       if (step < 0) last = std::min(last, (-row[i] - reach) / step + 1);
       if (step == 0 && row[i] + reach < 0) last = -1;
+      const double inside = row[i] + least_offset[i];
+      if (step > 0) inner_first = std::max(inner_first, -inside / step + 1);
+      if (step < 0) inner_last = std::min(inner_last, -inside / step - 1);
+      if (step == 0 && inside < 0) inner_last = -1;
     }
     if (!(first <= last)) continue;
     const int left = static_cast<int>(first), right = static_cast<int>(last);
+    const bool any_inner = inner_first <= inner_last;
+    const int inner_left = any_inner ? static_cast<int>(std::ceil(inner_first)) : right + 1;
+    const int inner_right = any_inner ? static_cast<int>(std::floor(inner_last)) : right;
     std::size_t at = 4 * (static_cast<std::size_t>(py) * static_cast<std::size_t>(stride) +
                           static_cast<std::size_t>(left));
     const double x0 = static_cast<double>(left) * kSubpixels;
@@ -187,6 +205,15 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
     Doubles e2 = row[2] + along_x[2] * x0 + offset[2];
     const double step0 = along_x[0] * kSubpixels, step1 = along_x[1] * kSubpixels,
                  step2 = along_x[2] * kSubpixels;
+    const auto advance = [&](int pixels) {
+      const int steps = is_exact ? 1 : pixels;
+      const double each = is_exact ? pixels : 1;
+      for (int i = 0; i < steps; ++i) {
+        e0 += step0 * each;
+        e1 += step1 * each;
+        e2 += step2 * each;
+      }
+    };
     double here = level + slope_y * y + slope_x * x0;
     const double step = slope_x * kSubpixels;
     const float* const farthest = behind.tile + (py >> behind.shift) * behind.across;
@@ -197,14 +224,18 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
       const double ends = std::max(here, here + step * count) + greatest_lean;
       if (ends * kBehind < static_cast<double>(farthest[px >> behind.shift])) {
         // Step by step: what is rounded on the way stays the same.
-        for (int i = 0; i < count; ++i) {
-          e0 += step0;
-          e1 += step1;
-          e2 += step2;
-          here += step;
-        }
+        advance(count);
+        for (int i = 0; i < count; ++i) here += step;
         at += 4 * static_cast<std::size_t>(count);
         px = next;
+        continue;
+      }
+      if (px >= inner_left && next - 1 <= inner_right) {
+        advance(count);
+        for (; px < next; ++px, at += 4) {
+          put(taken, static_cast<float>(here) + lean, id, nearness + at, ids + at);
+          here += step;
+        }
         continue;
       }
       for (; px < next; ++px, at += 4) {

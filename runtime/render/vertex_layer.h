@@ -38,6 +38,7 @@ class VertexLayer {
  private:
   void show_own(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror* mirror,
                 const Picture* reflected, Picture& picture);
+  static std::size_t row_from(std::span<const PixelAt> pixels, std::size_t first);
   void find_fragments(std::span<const PixelAt> pixels);
   void add_reflected(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror& mirror,
                      const Picture& reflected);
