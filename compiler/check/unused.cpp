@@ -49,7 +49,8 @@ bool declares_tasks(const syntax::File& file) {
         std::holds_alternative<syntax::VariantDecl>(decl.node) ||
         std::holds_alternative<syntax::VariantsDecl>(decl.node) ||
         std::holds_alternative<syntax::DeriveDecl>(decl.node) ||
-        std::holds_alternative<syntax::SuiteDecl>(decl.node))
+        std::holds_alternative<syntax::SuiteDecl>(decl.node) ||
+        std::holds_alternative<syntax::SpaceDecl>(decl.node))
       return true;
   }
   return false;

@@ -24,6 +24,7 @@ void define_model(Context& context) {
   define_sets(context);
   define_questions(context);
   define_suites(context);
+  define_spaces(context);
   ask_questions(context);
 }
 

@@ -10,7 +10,7 @@ namespace probe::sema {
 // judged here: that is check/. The order is that of need, each reads the tables of those above it:
 // attributes, facts -> objects -> datasets robots -> cameras, lights, fixtures -> scenes roles ->
 // layouts; templates; predicates -> metrics tasks, with what every `derive` makes -> starts -> sets
-// -> questions -> suites -> what is asked
+// -> questions -> suites -> what is asked; spaces
 void define_model(Context& context);
 
 void define_attributes(Context& context);
@@ -31,6 +31,7 @@ void define_starts(Context& context);
 void define_sets(Context& context);
 void define_questions(Context& context);
 void define_suites(Context& context);
+void define_spaces(Context& context);
 void ask_questions(Context& context);  // of every task that a suite asks them of
 
 }  // namespace probe::sema

@@ -60,7 +60,8 @@ constexpr bool is_of_tasks =
     std::is_same_v<Node, syntax::VariantDecl> || std::is_same_v<Node, syntax::VariantsDecl> ||
     std::is_same_v<Node, syntax::DeriveDecl> || std::is_same_v<Node, syntax::SetDecl> ||
     std::is_same_v<Node, syntax::SuiteDecl> || std::is_same_v<Node, syntax::QuestionsDecl> ||
-    std::is_same_v<Node, syntax::LightDecl> || std::is_same_v<Node, syntax::LayoutDecl>;
+    std::is_same_v<Node, syntax::SpaceDecl> || std::is_same_v<Node, syntax::LightDecl> ||
+    std::is_same_v<Node, syntax::LayoutDecl>;
 
 // The files that a layout's starts are read from.
 void add_starts(KeyMaker& out, const syntax::LayoutDecl& layout, const SourceSet& sources) {

@@ -162,6 +162,11 @@ class Walker {
     name(node.trained_on, Kind::kDataset);
     all(node.body);
   }
+  void operator()(const SpaceDecl& node) {
+    declare(node.name, Kind::kSpace, decl_);
+    name(node.of, Kind::kTask);
+    all(node.body);
+  }
 
   // ---- objects, parts
   void operator()(const MeshStmt&) {}
@@ -377,6 +382,21 @@ class Walker {
   void operator()(const SeedsStmt&) {}
   void operator()(const ExpectTasksStmt&) {}
   void operator()(const SuiteQuestionsStmt& stmt) { names(stmt.sets, Kind::kQuestions); }
+
+  // ---- spaces
+  void operator()(const SpaceLightStmt&) {}
+  void operator()(const SpaceCameraStmt& stmt) { name(stmt.view, Kind::kView); }
+  void operator()(const SpacePlaceStmt& stmt) {
+    for (const SpacePlaceStmt::Disc& disc : stmt.discs)
+      name(disc.what, Kind::kRole | Kind::kObject);
+  }
+  void operator()(const SpaceClutterStmt& stmt) { names(stmt.from, Kind::kObject); }
+  void operator()(const SpaceWordsStmt& stmt) {
+    for (const SpaceWordsStmt::Pool& pool : stmt.pools)
+      name(pool.of, pool.is_templates ? Kind::kFrame : Kind::kRole);
+  }
+  void operator()(const SpaceSensorStmt&) {}
+  void operator()(const SpaceDelayStmt&) {}
 
   // ---- answers
   void operator()(const AnswerOne& answer) { thing(answer.who, kBodies | Kind::kVariable); }

@@ -15,6 +15,7 @@
 #include "compiler/model/expr.h"
 #include "compiler/model/ids.h"
 #include "compiler/model/questions.h"
+#include "compiler/model/space.h"
 #include "compiler/model/units.h"
 #include "compiler/source/source.h"
 #include "compiler/syntax/ast.h"
@@ -692,6 +693,7 @@ struct Model {
   Table<TaskId, Task> tasks;
   Table<SetId, TaskSet> sets;
   Table<SuiteId, Suite> suites;
+  std::vector<Space> spaces;
   Table<QuestionSetId, QuestionSet> question_sets;
   std::vector<AskedQuestion> asked;            // ascending by task, set and family
   std::vector<LeftOut> left_out;               // as well

@@ -24,6 +24,7 @@ std::string_view name_in(const syntax::PoseStmt& stmt) { return stmt.object.text
 std::string_view name_in(const syntax::MovesStmt& stmt) { return stmt.what.text; }
 std::string_view name_in(const syntax::MetricStmt& stmt) { return stmt.name.text; }
 std::string_view name_in(const syntax::ReferStmt& stmt) { return stmt.role.text; }
+std::string_view name_in(const syntax::SpaceCameraStmt& stmt) { return stmt.view.text; }
 
 struct KeyOf {
   const syntax::StatementWord& said;
@@ -94,6 +95,7 @@ syntax::Block block_of(const syntax::TaskDecl&) { return syntax::Block::kTask; }
 syntax::Block block_of(const syntax::VariantDecl&) { return syntax::Block::kTask; }
 syntax::Block block_of(const syntax::DeriveDecl&) { return syntax::Block::kTask; }
 syntax::Block block_of(const syntax::SuiteDecl&) { return syntax::Block::kSuite; }
+syntax::Block block_of(const syntax::SpaceDecl&) { return syntax::Block::kSpace; }
 
 // A fact has one truth, and a thing is seen or is not.
 void check_claims(Context& context, const std::vector<syntax::ObjectStmt>& body) {

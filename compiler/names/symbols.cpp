@@ -96,6 +96,9 @@ struct Collector {
   void operator()(const syntax::SuiteDecl& node) const {
     collect(symbols.suites, symbols.suite_decls, diagnostics, file, decl, node);
   }
+  void operator()(const syntax::SpaceDecl& node) const {
+    collect(symbols.spaces, symbols.space_decls, diagnostics, file, decl, node);
+  }
 };
 
 }  // namespace

@@ -43,8 +43,8 @@ struct Symbols {
   NameTable datasets{"dataset"}, attributes{"attribute"}, facts{"fact"}, objects{"object"},
       robots{"robot"}, cameras{"camera"}, lights{"light"}, fixtures{"fixture"}, scenes{"scene"},
       layouts{"layout"}, templates{"template"}, predicates{"predicate"}, metrics{"metrics"},
-      tasks{"task"}, sets{"set"}, suites{"suite"}, question_sets{"set of questions"},
-      roles{"role"};  // beside source and target
+      tasks{"task"}, sets{"set"}, suites{"suite"}, spaces{"space"},
+      question_sets{"set of questions"}, roles{"role"};  // beside source and target
 
   // Parallel to the names.
   std::vector<Declared<syntax::DatasetDecl>> dataset_decls;
@@ -66,6 +66,7 @@ struct Symbols {
   std::vector<Declared<syntax::SetDecl>> set_decls;
   std::vector<Declared<syntax::QuestionsDecl>> question_decls;
   std::vector<Declared<syntax::SuiteDecl>> suite_decls;
+  std::vector<Declared<syntax::SpaceDecl>> space_decls;
   std::vector<Declared<syntax::RoleDecl>> role_decls;
 };
 

@@ -1091,6 +1091,60 @@ struct SuiteDecl {
   std::vector<SuiteStmt> body;
 };
 
+// ---- spaces
+
+struct SpaceRange {
+  Quantity low, high;
+};
+// What varies about a task, and how far; each line is one axis or several.
+struct SpaceLightStmt {  // `light ambient 0.05 .. 0.6, power 0.2 .. 3, direction within 60deg`
+  Span span;
+  std::optional<SpaceRange> ambient, power;
+  std::optional<Quantity> direction;
+};
+struct SpaceCameraStmt {  // `camera third_view within (5cm, 5cm, 5cm), 8deg`
+  Span span;
+  Name view;
+  std::optional<Point> place;
+  std::optional<Quantity> turn;
+};
+struct SpacePlaceStmt {  // `place source in disc 12cm, target in disc 12cm`
+  struct Disc {
+    Name what;
+    Quantity radius;
+  };
+  Span span;
+  std::vector<Disc> discs;
+};
+struct SpaceClutterStmt {  // `clutter 0 .. 6 from (nut, rabbit)`
+  Span span;
+  Int least, most;
+  std::vector<Name> from;
+};
+struct SpaceWordsStmt {  // `words templates of put, phrases of source`
+  struct Pool {
+    bool is_templates = false;
+    Name of;  // a frame or a role
+  };
+  Span span;
+  std::vector<Pool> pools;
+};
+struct SpaceSensorStmt {  // `sensor noise 0 .. 0.1, blur 0px .. 3px, exposure 0.2 .. 2`
+  Span span;
+  std::optional<SpaceRange> noise, blur, exposure;
+};
+struct SpaceDelayStmt {  // `delay 0ms .. 600ms`
+  Span span;
+  SpaceRange range;
+};
+using SpaceStmt = std::variant<SpaceLightStmt, SpaceCameraStmt, SpacePlaceStmt, SpaceClutterStmt,
+                               SpaceWordsStmt, SpaceSensorStmt, SpaceDelayStmt>;
+struct SpaceDecl {
+  Name name;
+  Name of;  // the task
+  std::vector<SpaceStmt> body;
+};
+
 // ---- file
 // -----------------------------------------------------------------------------------------------------------
 
@@ -1102,10 +1156,10 @@ struct Allow {  // @allow(confounded, "why")
 };
 
 using DeclNode =
-    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, ExtendDecl, RobotDecl, CameraDecl,
-                 LightDecl, FixtureDecl, SceneDecl, LayoutDecl, TemplateDecl, PredicateDecl,
-                 MetricsDecl, RoleDecl, TaskDecl, VariantDecl, VariantsDecl, DeriveDecl, SetDecl,
-                 QuestionsDecl, SuiteDecl>;
+    std::variant<UseDecl, DatasetDecl, AttributeDecl, FactsDecl, ObjectDecl, ExtendDecl, RobotDecl,
+                 CameraDecl, LightDecl, FixtureDecl, SceneDecl, LayoutDecl, TemplateDecl,
+                 PredicateDecl, MetricsDecl, RoleDecl, TaskDecl, VariantDecl, VariantsDecl,
+                 DeriveDecl, SetDecl, QuestionsDecl, SuiteDecl, SpaceDecl>;
 
 struct Decl {
   Span span;  // keyword to the last token

@@ -366,6 +366,20 @@ class Parser {
   SuiteStmt suite_expect();
   SuiteStmt suite_questions();
 
+  // ---- parse_space.cpp ----
+  DeclNode space_decl();
+  SpaceStmt space_light();
+  SpaceStmt space_camera();
+  SpaceStmt space_place();
+  SpaceStmt space_clutter();
+  SpaceStmt space_words();
+  SpaceStmt space_sensor();
+  SpaceStmt space_delay();
+  SpaceRange space_range();
+  // Pairs of a word and a range behind commas, each word once.
+  void space_ranges(std::initializer_list<std::pair<std::string_view, std::optional<SpaceRange>*>>,
+                    std::optional<Quantity>* direction = nullptr);
+
   // ---- parser.cpp ----
   void declaration();
   DeclNode use_decl();

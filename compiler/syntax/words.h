@@ -24,7 +24,8 @@ enum class Block : std::uint8_t {
   kTask,
   kSolution,
   kQuestions,
-  kSuite
+  kSuite,
+  kSpace
 };
 
 // How often a statement may stand in one block: the column `repeat`.

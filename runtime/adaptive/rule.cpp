@@ -78,6 +78,11 @@ std::string to_text(const Rule& rule) {
 }
 
 Result<Rule> rule_from_text(const std::string& text, const std::string& where) {
+  if (text == store::kBySearch)
+    return Failure{Fault::kUsage,
+                   "a search chose its episodes by what it found, so its rates are those of no suite: "
+                   "`vlaprobe search show DIR` says what was found, `results --csv` lists episodes",
+                   where};
   const Failure unknown{Fault::kStore,
                         "stops by a rule that this program does not know: `" + text + "`", where};
   if (text.starts_with(kDecidedText)) {

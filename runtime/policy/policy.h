@@ -111,8 +111,18 @@ struct Skill {
   std::string name = {};  // "skill 2 `put carrot in cabinet.inside_top`"
 };
 
+// What is around, some of it against the task's baseline, where the plan has that: what policies
+// with a known weak spot go by (weak.h).
+struct Surroundings {
+  double ambient = 0, power = 0;  // of the light; of all its lamps together
+  double camera_moved = 0;        // m, of the first camera in its mount's frame
+  int clutter = 0;                // objects more than there
+  bool reworded = false;          // another instruction
+};
+
 // The privileged view.
 struct Privileged {
+  Surroundings surroundings;
   std::vector<PrivilegedObject> objects;  // in the order of the task's bodies
   int source = 0, target = 1;             // indices into `objects`; -1 for none
   int first_distractor = 2;               // the others follow it; -1 for none

@@ -12,13 +12,25 @@
 #include "runtime/base/spelling.h"
 #include "runtime/expert/expert.h"
 #include "runtime/policy/scripted.h"
+#include "runtime/policy/weak.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/servers.h"
 
 namespace probe::run {
 namespace {
 
-enum class Kind { kExpert, kNull, kRandom, kReach, kWrong, kNoisy, kPushed, kReplay, kServer };
+enum class Kind {
+  kExpert,
+  kNull,
+  kRandom,
+  kReach,
+  kWrong,
+  kNoisy,
+  kPushed,
+  kWeak,
+  kReplay,
+  kServer
+};
 
 struct Entry {
   std::string_view name;      // what stands before ':'
@@ -50,6 +62,11 @@ const std::array kOwnPolicies = {
           Kind::kPushed,
           {true, false, false},
           "the expert, pushed off its way in one step of eight"},
+    Entry{"weak",
+          "SPOT",
+          Kind::kWeak,
+          {true, false, false},
+          "the expert, still where SPOT holds: ambient<0.12, camera>=3cm, clutter>=2+reworded"},
     Entry{
         "replay", "DIR", Kind::kReplay, {true, true, false}, "the recorded actions of another run"},
 };
@@ -166,6 +183,11 @@ Result<PolicyChoice> choose_policy(std::string_view text, bool accepts_any_certi
     PROBE_ASSIGN(const double sigma, read_sigma(choice.argument, choice.entry->name));
     chosen.traits.draws = sigma > 0;
   }
+  if (choice.entry->kind == Kind::kWeak) {
+    PROBE_ASSIGN(const policy::WeakSpot spot, policy::read_weak_spot(choice.argument));
+    chosen.traits.draws = std::ranges::any_of(
+        spot.terms, [](const policy::WeakSpot::Term& term) { return term.width > 0; });
+  }
   if (choice.entry->kind == Kind::kServer) {
     PROBE_ASSIGN(servers::ServerChoice server, server_of(choice));
     chosen.traits.content = servers::describe(server);
@@ -197,6 +219,11 @@ Result<std::unique_ptr<policy::Policy>> make_policy(const PolicyChoice& chosen,
       PROBE_ASSIGN(std::unique_ptr<policy::Policy> expert, make_scripted(Kind::kExpert));
       return choice.entry->kind == Kind::kNoisy ? policy::make_noisy(std::move(expert), sigma)
                                                 : policy::make_pushed(std::move(expert), sigma);
+    }
+    case Kind::kWeak: {
+      PROBE_ASSIGN(policy::WeakSpot spot, policy::read_weak_spot(choice.argument));
+      PROBE_ASSIGN(std::unique_ptr<policy::Policy> expert, make_scripted(Kind::kExpert));
+      return policy::make_weak(std::move(spot), std::move(expert));
     }
     case Kind::kExpert:
     case Kind::kReach:

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <set>
 
 #include "runtime/adaptive/sampled.h"
@@ -37,6 +38,12 @@ std::vector<std::uint32_t> tasks_of(const std::vector<EpisodeJob>& jobs) {
   std::set<std::uint32_t> tasks;
   for (const EpisodeJob& job : jobs) tasks.insert(job.task);
   return {tasks.begin(), tasks.end()};
+}
+
+std::vector<std::uint32_t> all_tasks(const plan::Plan& plan) {
+  std::vector<std::uint32_t> tasks(plan.tasks().size());
+  std::iota(tasks.begin(), tasks.end(), 0u);
+  return tasks;
 }
 
 // Rows of the run that `replay:DIR` repeats; only those that came to an end.
@@ -321,6 +328,18 @@ Result<Actor> choose_actor(const RunOptions& options) {
   return actor;
 }
 
+namespace {
+
+// The first episodes of a caller that chooses while the results come in.
+Result<Selection> first_choice(const plan::Plan& plan, const RunOptions& options) {
+  Selection selection;
+  if (!plan.suites().empty()) selection.suite = std::string(plan.text(plan.suites()[0].name));
+  PROBE_ASSIGN(selection.jobs, options.next());
+  return selection;
+}
+
+}  // namespace
+
 Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunOptions options = asked;
   PROBE_ASSIGN(const Actor actor, choose_actor(options));
@@ -340,7 +359,9 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   RunOptions choosing = options;
   if (dropped) choosing.until = dropped;
   PROBE_ASSIGN(Selection selection,
-               select_jobs(plan, choosing, traits.draws, traits.recorded ? &recorded : nullptr));
+               options.next ? first_choice(plan, options)
+                            : select_jobs(plan, choosing, traits.draws,
+                                          traits.recorded ? &recorded : nullptr));
   PROBE_ASSIGN(const AssetRoot root, find_asset_root(options.assets));
 
   RunSummary summary;
@@ -363,12 +384,18 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
   if (traits.wants_distractor) note_idle_tasks(plan, selection, options.policy, summary);
   // Assets are checked before the folder is touched: a plan that cannot run leaves nothing behind.
-  PROBE_ASSIGN(auto assets, stage::SharedAssets::load(plan, root, tasks_of(selection.jobs)));
+  // Which tasks will be chosen later nobody knows.
+  PROBE_ASSIGN(auto assets,
+               stage::SharedAssets::load(
+                   plan, root, options.next ? all_tasks(plan) : tasks_of(selection.jobs)));
   const store::Fingerprint fingerprint = store::take_fingerprint(stage::asset_digest(plan));
   store::RunRecord record{
       {to_hex(plan.root()), options.name.empty() ? options.policy : options.name,
        content_of(options, traits), options.live ? to_text(*options.live) : "",
-       options.only_success || is_of_successes, options.until ? to_text(*options.until) : ""},
+       options.only_success || is_of_successes,
+       options.until  ? to_text(*options.until)
+       : options.next ? std::string(store::kBySearch)
+                      : ""},
       selection.suite,
       selection.seeds,
       fingerprint};
@@ -455,9 +482,18 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
       adaptive_jobs->tell(key, outcome);
     };
   }
-  const Status ran = adaptive_jobs
-                         ? run_jobs(*adaptive_jobs, shared.jobs.size(), options.jobs, make_worker)
-                         : run_jobs(shared.jobs.size(), options.jobs, make_worker);
+  Status ran = adaptive_jobs
+                   ? run_jobs(*adaptive_jobs, shared.jobs.size(), options.jobs, make_worker)
+                   : run_jobs(shared.jobs.size(), options.jobs, make_worker);
+  while (ran && options.next) {
+    auto more = options.next();
+    if (!more) ran = more.failure();
+    if (!more || more->empty()) break;
+    std::erase_if(*more, [&](const EpisodeJob& job) { return stored.contains(key_of(plan, job)); });
+    shared.jobs = std::move(*more);
+    summary.total += static_cast<int>(shared.jobs.size());
+    ran = run_jobs(shared.jobs.size(), options.jobs, make_worker);
+  }
   // Where episodes under way were left, what came next depended on more than what is stored.
   const bool left_some = options.until && options.stopped && options.stopped();
   summary.call.ended = !left_some;

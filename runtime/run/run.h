@@ -26,6 +26,8 @@ class Plan;
 
 namespace probe::run {
 
+struct EpisodeJob;
+
 enum class VideoChoice { kNone, kFailures, kAll };
 
 // What to do with a folder that was begun with another plan, policy, profile or build.
@@ -85,6 +87,10 @@ struct RunOptions {
   // behind which it was true are not stored; the same call continues with them.
   std::function<bool()> stopped = {};
   std::optional<OwnPolicy> own_policy;  // acts in place of `policy`, which then is only a name
+  // Who chooses episodes as results come in, in place of suite, tasks, episodes, seeds and shard:
+  // asked for the first and, whenever all that it chose have ended, for the next; none ends the
+  // call. Episodes that the folder holds already are not run again. Its failure ends the call, too.
+  std::function<Result<std::vector<EpisodeJob>>()> next = {};
 };
 
 struct RunSummary {

@@ -65,6 +65,27 @@ std::optional<policy::PrivilegedFixture::Joint> joint_above(const LoadedFixture&
   return std::nullopt;
 }
 
+policy::Surroundings surroundings_of(const plan::Plan& plan, const plan::TaskRecord& task) {
+  policy::Surroundings there;
+  const plan::LightRecord& light = plan.lights()[task.light];
+  there.ambient = light.ambient;
+  for (const plan::SunRecord& sun : plan.suns(light)) there.power += sun.power;
+  for (const plan::LampRecord& lamp : plan.lamps(light)) there.power += lamp.power;
+  if (task.baseline == plan::kNone) return there;
+  const plan::TaskRecord& baseline = plan.tasks()[task.baseline];
+  there.camera_moved = (to_vec(plan.cameras()[task.camera].position) -
+                        to_vec(plan.cameras()[baseline.camera].position))
+                           .norm();
+  const auto objects = [&](const plan::TaskRecord& one) {
+    return static_cast<int>(std::ranges::count_if(plan.bodies(one), [](const auto& body) {
+      return body.kind == static_cast<std::uint32_t>(plan::BodyKind::kObject);
+    }));
+  };
+  there.clutter = objects(task) - objects(baseline);
+  there.reworded = plan.text(task.prompt) != plan.text(baseline.prompt);
+  return there;
+}
+
 }  // namespace
 
 Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t task_index,
@@ -78,6 +99,7 @@ Result<policy::Privileged> make_privileged(const plan::Plan& plan, std::uint32_t
                    "task `" + std::string(plan.text(task.name)) + "`"};
   };
   policy::Privileged view;
+  view.surroundings = surroundings_of(plan, task);
   view.base = base_pose(scene);
   view.surface_z = scene.surface_z;
   for (std::size_t i = 0; i < bodies.objects; ++i) {

@@ -133,11 +133,12 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
         std::string("holds ") + kept(there.only_success) + ", not " + kept(here.only_success);
   } else if (there.until != here.until) {
     const auto ends = [](const std::string& until) {
+      if (until == kBySearch) return std::string("a search chooses the episodes of");
       return until.empty() ? std::string("runs all its episodes")
                            : "stops by `--until` (" + until + ")";
     };
     changes.identity = "holds a run that " + ends(there.until) + ", not one that " + ends(here.until);
-    if (here.until.empty())
+    if (here.until.empty() && there.until != kBySearch)
       changes.identity += "; `--until none` runs the others and makes it an ordinary one";
   } else if (there.live != here.live) {
     changes.identity = "holds " + kind(there.live) + ", not " + kind(here.live);

@@ -30,6 +30,10 @@ inline constexpr int kAdaptiveSchemaVersion = 5;
 inline constexpr std::string_view kOwnPolicy = "policy ";
 
 // What must not change between two calls that write into one folder.
+// RunIdentity::until of a run whose episodes a search chose while results came in: no rule that
+// rates could be told by.
+inline constexpr std::string_view kBySearch = "chosen by a search";
+
 struct RunIdentity {
   std::string plan_root;  // hex
   std::string policy;

@@ -216,6 +216,16 @@ const statements = {
     expect: ($) => seq($.integer, 'tasks', on($, ','), $.integer, 'episodes'),
     questions: names,
   },
+  space: {
+    light: ($) => list($, choice(seq(choice('ambient', 'power'), range($, $.quantity)), seq('direction', 'within', $.quantity))),
+    camera: ($) => seq(field('view', $.identifier), 'within',
+                       choice(seq($.point, optional(seq(on($, ','), $.quantity))), $.quantity)),
+    place: ($) => list($, $.disc),
+    clutter: ($) => seq(range($, $.integer), 'from', parens(names($))),
+    words: ($) => list($, seq(choice('templates', 'phrases'), 'of', $.identifier)),
+    sensor: ($) => list($, seq(choice('noise', 'blur', 'exposure'), range($, $.quantity))),
+    delay: ($) => range($, $.quantity),
+  },
 };
 
 const question = ($, ...answer) => seq(
@@ -262,6 +272,7 @@ const declarations = {
   questions: ($) => seq('questions', named($), block($, $._questions_statement)),
   suite: ($) => seq('suite', named($), optional(seq('trained', 'on', field('trained_on', $.identifier))),
                     block($, $._suite_statement)),
+  space: ($) => seq('space', named($), 'of', field('of', $.identifier), block($, $._space_statement)),
 };
 
 // ---- units: those of compiler/syntax/units.def ----------------------------------------------------------------------
@@ -384,6 +395,7 @@ module.exports = grammar({
     // ---- tasks ----
     task_block: ($) => block($, $._task_statement),
     member: ($) => seq(repeat($.allow), named($), $.task_block),
+    disc: ($) => seq(field('what', $.identifier), 'in', 'disc', $.quantity),
     clear_phrase: ($) => seq(field('phrase', $.identifier), 'of', field('role', $.identifier)),
 
     binder: ($) => seq(named($), 'in', choice(

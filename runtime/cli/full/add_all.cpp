@@ -10,6 +10,7 @@ void add_all_verbs(Verb program, int& exit) {
   add_sheet(program, exit);
   add_run(program, exit);
   add_sweep(program, exit);
+  add_search(program, exit);
   add_ask(program, exit);
   add_merge(program, exit);
   add_slurm(program, exit);

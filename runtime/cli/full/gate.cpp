@@ -1,12 +1,12 @@
 // vlaprobe gate
 #include "runtime/report/gate.h"
 
-#include <charconv>
 #include <span>
 
 #include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
+#include "runtime/cli/full/share.h"
 #include "runtime/cli/full/verbs.h"
 
 namespace probe::cli {
@@ -18,32 +18,19 @@ struct GateArguments {
   bool json = false, decided = false;
 };
 
-// "2%" or "0.02".
-Result<double> share(const std::string& flag, const std::string& text) {
-  std::string_view digits = text;
-  const bool percent = digits.ends_with('%');
-  if (percent) digits.remove_suffix(1);
-  while (percent && digits.ends_with(' ')) digits.remove_suffix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size())
-    return Failure{Fault::kUsage, flag + " takes a share such as 2% or 0.02, not `" + text + "`", ""};
-  return percent ? value / 100 : value;
-}
-
-Status write(const std::string& path, const std::string& text) {
+Status write_text(const std::string& path, const std::string& text) {
   return write_file(path, std::as_bytes(std::span(text)));
 }
 
 Result<report::Gate> measured(GateArguments& arguments) {
-  PROBE_ASSIGN(arguments.options.allow, share("--allow", arguments.allow));
-  PROBE_ASSIGN(arguments.options.error, share("--error", arguments.error));
+  PROBE_ASSIGN(arguments.options.allow, read_share("--allow", arguments.allow));
+  PROBE_ASSIGN(arguments.options.error, read_share("--error", arguments.error));
   for (const std::string& out : {arguments.junit, arguments.markdown})
     PROBE_TRY(assets::check_output(out, {}));
   PROBE_ASSIGN(report::Gate gate,
                report::gate_folders(arguments.now, arguments.before, arguments.options));
-  if (!arguments.junit.empty()) PROBE_TRY(write(arguments.junit, to_junit(gate)));
-  if (!arguments.markdown.empty()) PROBE_TRY(write(arguments.markdown, to_markdown(gate)));
+  if (!arguments.junit.empty()) PROBE_TRY(write_text(arguments.junit, to_junit(gate)));
+  if (!arguments.markdown.empty()) PROBE_TRY(write_text(arguments.markdown, to_markdown(gate)));
   return gate;
 }
 

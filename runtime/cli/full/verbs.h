@@ -10,6 +10,7 @@ void add_preview(Verb app, int& exit);
 void add_sheet(Verb app, int& exit);
 void add_run(Verb app, int& exit);
 void add_sweep(Verb app, int& exit);
+void add_search(Verb app, int& exit);
 void add_ask(Verb app, int& exit);
 void add_merge(Verb app, int& exit);
 void add_slurm(Verb app, int& exit);

@@ -90,7 +90,8 @@ TEST_CASE("each block of the grammar has the statements of its block in the tabl
       {Block::kScene, "scene_st"},     {Block::kFixture, "fixture_st"},
       {Block::kLayout, "layout_st"},   {Block::kTask, "task_st"},
       {Block::kSolution, "skill"},     {Block::kPart, "part_st"},
-      {Block::kQuestions, "question"}, {Block::kSuite, "suite_st"}};
+      {Block::kQuestions, "question"}, {Block::kSuite, "suite_st"},
+      {Block::kSpace, "space_st"}};
   std::size_t checked = 0;
   for (const auto& [block, rule] : blocks) {
     const std::set<std::string> words = quoted_words(rule_of(grammar, rule));

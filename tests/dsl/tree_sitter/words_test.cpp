@@ -95,6 +95,8 @@ std::string name_of(syntax::Block block) {
       return "questions";
     case syntax::Block::kSuite:
       return "suite";
+    case syntax::Block::kSpace:
+      return "space";
   }
   return "";
 }

@@ -8,8 +8,8 @@
 [
   "a" "absent" "abstract" "against" "air" "all" "allow" "along" "always" "ambient" "among" "angle" "answer" "any"
   "area" "arm_path" "armature" "around" "as" "at" "attribute" "avoid" "axis" "backdrop" "bare" "baselines" "beside"
-  "blur" "body" "both" "box" "by" "camera" "cameras" "catalogue" "cells" "choice" "clear" "close" "color" "com"
-  "control" "count" "cutoff" "damping" "dataset" "delay" "density" "derive" "distinct" "distractors" "drive" "drop"
+  "blur" "body" "both" "box" "by" "camera" "cameras" "catalogue" "cells" "choice" "clear" "close" "clutter" "color" "com"
+  "control" "count" "cutoff" "damping" "dataset" "delay" "density" "derive" "direction" "disc" "distinct" "distractors" "drive" "drop"
   "dropped" "end" "ends" "episodes" "expect" "exponent" "exposure" "extend" "facts" "fade" "final" "fingers" "first"
   "fixture" "fixtures" "for" "frame" "free" "friction" "from" "grid" "grip" "grip_path" "has" "headlight" "home" "horizon"
   "idle" "image" "impulse" "in" "inertia" "is" "jitter" "joint" "joints" "kp" "layout" "left" "length" "lens"
@@ -20,9 +20,9 @@
   "predicate" "prefix" "present" "press" "push" "put" "quat" "questions" "ramp" "reach" "refer" "region" "relation"
   "relations" "remaining" "rest" "robot" "robots" "role" "roll" "sample" "samples" "say" "scale" "scene" "scenes" "seed"
   "seeds" "seen" "sensor" "set" "settle" "shading" "shadow" "solution" "source" "specular" "spot" "spread" "stands"
-  "start" "starts" "stay" "step" "steps" "stiffness" "suite" "sun" "surface" "target" "task" "tasks" "tcp"
+  "space" "start" "starts" "stay" "step" "steps" "stiffness" "suite" "sun" "surface" "target" "task" "tasks" "tcp"
   "template" "templates" "texture" "the" "then" "time" "times" "to" "trained" "turn" "uncouple" "unseen" "urdf" "use"
-  "uses" "variant" "variants" "vertex" "viscosity" "when" "where" "whole" "window" "with" "x" "yaw" "yesno"
+  "uses" "variant" "variants" "vertex" "viscosity" "when" "where" "whole" "window" "with" "within" "words" "x" "yaw" "yesno"
 ] @keyword
 ["and" "or" "not"] @keyword.operator
 (object_phrase axis: (identifier) @keyword)
@@ -60,6 +60,7 @@
 (set_declaration name: (identifier) @type)
 (questions_declaration name: (identifier) @type)
 (suite_declaration name: (identifier) @type)
+(space_declaration name: (identifier) @type)
 (_ like: (identifier) @type)
 (_ against: (identifier) @type)
 (variant_declaration of: (identifier) @type)

@@ -28,7 +28,7 @@ static const char* const DECLARATIONS[] = {
     "use",     "dataset",   "attribute", "facts",    "object", "extend",  "robot",
     "camera",  "light",     "fixture",   "scene",    "layout", "role",    "template",
     "metrics", "predicate", "relation",  "abstract", "task",   "variant", "variants",
-    "derive",  "set",       "questions", "suite",
+    "derive",  "set",       "questions", "space", "suite",
 };
 enum { LONGEST_DECLARATION = 9 };
 

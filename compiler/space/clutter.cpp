@@ -1,0 +1,85 @@
+#include "compiler/space/clutter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "compiler/define/views.h"
+#include "compiler/geometry/footprint.h"
+#include "compiler/geometry/in_frame.h"
+#include "compiler/space/draws.h"
+#include "runtime/base/trig.h"
+
+namespace probe::space {
+namespace {
+
+// What settling may move, and that nothing begins by touching.
+constexpr double kRoom = 0.005;  // m
+constexpr int kTries = 200;
+
+sema::Turn about_vertical(double angle, const sema::Turn& rest) {
+  const SinCos half = portable_sincos(angle / 2);
+  const auto& r = rest.rotation;
+  // (c, 0, 0, s) before the rest turn.
+  return {{half.cos * r[0] - half.sin * r[3], half.cos * r[1] - half.sin * r[2],
+           half.cos * r[2] + half.sin * r[1], half.cos * r[3] + half.sin * r[0]}};
+}
+
+// By a camera that stands still, where there is one: what nobody sees is no clutter.
+bool is_seen(const std::vector<sema::Frustum>& eyes, const sema::Object& object,
+             const sema::Start::Placed& placed) {
+  return eyes.empty() || std::ranges::any_of(eyes, [&](const sema::Frustum& eye) {
+           const auto outside = eye.outside(object, placed);
+           return outside && *outside == 0;
+         });
+}
+
+bool is_inside(const sema::Footprint& print, const std::array<double, 4>& area) {
+  const double x = print.reach_along({1, 0}), y = print.reach_along({0, 1});
+  return print.centre.x - x >= area[0] && print.centre.x + x <= area[2] &&
+         print.centre.y - y >= area[1] && print.centre.y + y <= area[3];
+}
+
+}  // namespace
+
+std::optional<std::vector<sema::Start::Placed>> lay_clutter(
+    const sema::Model& model, const sema::Task& task, const sema::Start& start, std::size_t number,
+    const std::vector<sema::ObjectId>& objects, std::uint64_t of) {
+  const sema::Scene& scene = model.scenes[task.scene];
+  const auto& area = scene.area;
+  std::vector<sema::Footprint> there;
+  for (const sema::Start::Placed& placed : start.placed)
+    there.push_back(footprint(model.objects[placed.object], placed));
+  std::vector<sema::Frustum> eyes;
+  for (const sema::View& view : sema::views_of(model, task)) {
+    if (auto eye = sema::Frustum::of(model, scene, model.cameras[view.camera]))
+      eyes.push_back(*std::move(eye));
+  }
+  std::vector<sema::Start::Placed> laid;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const sema::Object& object = model.objects[objects[i]];
+    const sema::Turn rest = object.rest.empty() ? sema::Turn{} : object.rest.front();
+    const std::string what = "clutter " + std::to_string(number) + " " + std::to_string(i);
+    bool found = false;
+    for (std::uint64_t t = 0; t < kTries && !found; ++t) {
+      sema::Start::Placed placed;
+      placed.object = objects[i];
+      placed.x = area[0] + draw(of, what, 3 * t) * (area[2] - area[0]);
+      placed.y = area[1] + draw(of, what, 3 * t + 1) * (area[3] - area[1]);
+      placed.turn = about_vertical(2 * std::numbers::pi * draw(of, what, 3 * t + 2), rest);
+      const sema::Footprint print = footprint(object, placed);
+      if (!is_inside(print, area) || !is_seen(eyes, object, placed)) continue;
+      bool free = true;
+      for (const sema::Footprint& other : there) free = free && overlap(print, other) < -kRoom;
+      if (!free) continue;
+      there.push_back(print);
+      laid.push_back(placed);
+      found = true;
+    }
+    if (!found) return std::nullopt;
+  }
+  return laid;
+}
+
+}  // namespace probe::space

@@ -1,0 +1,19 @@
+// Where clutter lies: in each start of its own, clear of what is there and in the picture.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "compiler/model/model.h"
+
+namespace probe::space {
+
+// `objects` beside what lies in `start` already, on the area of the task's scene, each turned at
+// random about the vertical; drawn from `of` and the start's number, so that more clutter leaves
+// the first of it where it was. Nothing where one found no room in 200 tries.
+std::optional<std::vector<sema::Start::Placed>> lay_clutter(
+    const sema::Model& model, const sema::Task& task, const sema::Start& start, std::size_t number,
+    const std::vector<sema::ObjectId>& objects, std::uint64_t of);
+
+}  // namespace probe::space

@@ -1,0 +1,104 @@
+// Which axes matter, and which two matter together.
+#include <fmt/format.h>
+
+#include "runtime/search/hunt.h"
+#include "runtime/search/method/axes.h"
+#include "runtime/search/scale.h"
+
+namespace probe::search {
+namespace {
+
+// "light.ambient below 0.11", "words drop_on".
+std::string text_of(const sema::Space& space, std::size_t axis, const Side& side) {
+  const sema::SpaceAxis& of = space.axes[axis];
+  Point point = point_of(space, space::own_values(space));
+  point[axis] = side.value;
+  const std::string value = space::value_text(of, values_of(space, point)[axis]);
+  switch (side.kind) {
+    case SideKind::kBelow:
+      return of.name + " below " + value;
+    case SideKind::kAtLeast:
+      return of.name + " from " + value + " on";
+    case SideKind::kIs:
+      return of.name + " " + value;
+    case SideKind::kIsNot:
+      break;
+  }
+  return of.name + " other than " + value;
+}
+
+}  // namespace
+
+Status search_axes(Hunt& hunt) {
+  const sema::Space& space = hunt.space();
+  AxesOptions options;
+  options.seed = hunt.options.seed;
+  if (hunt.options.budget) options.points = *hunt.options.budget;
+  Axes axes(method_space(space), options);
+  PROBE_TRY(hunt.try_points({[&] { return axes.done(); }, [&] { return axes.ask(); },
+                             [&](std::span<const Outcome> told) { axes.tell(told); }},
+                            "axes"));
+  hunt.tell("the figures are worked out");
+  const AxesFinding found = axes.finding();
+  SearchSummary& summary = hunt.summary;
+  summary.lines.push_back(
+      fmt::format("{} of points drawn over the whole space fail", of_text(found.failures)));
+  Json effects = Json::array(), pairs = Json::array();
+  for (std::size_t i = 0; i < found.axes.size(); ++i) {
+    const AxisEffect& one = found.axes[i];
+    std::string line = space.axes[i].name + ": ";
+    line += one.matters
+                ? fmt::format("matters; {} it fails {}, elsewhere {}", text_of(space, i, one.side),
+                              of_text(one.there), of_text(one.elsewhere))
+                : "no effect that these trials would show";
+    line +=
+        fmt::format(" (explains {:.0f} %, {:.0f} to {:.0f}; with its pairs {:.0f} %; p = {:.2g})",
+                    100 * one.first, 100 * one.first_interval.low, 100 * one.first_interval.high,
+                    100 * one.total, one.p);
+    summary.lines.push_back(line);
+    effects.push_back({{"axis", space.axes[i].name},
+                       {"matters", one.matters},
+                       {"p", one.p},
+                       {"side", text_of(space, i, one.side)},
+                       {"failures_there", json_of(one.there)},
+                       {"failures_elsewhere", json_of(one.elsewhere)},
+                       {"first", one.first},
+                       {"first_interval", json_of(one.first_interval)},
+                       {"total", one.total},
+                       {"total_interval", json_of(one.total_interval)},
+                       {"sentence", line}});
+  }
+  for (const PairEffect& one : found.pairs) {
+    std::string line;
+    if (one.named) {
+      line = fmt::format(
+          "{} and {} {}: {} and {} fail {}, one of the two alone {} and {}, neither {} (p = "
+          "{:.2g})",
+          space.axes[one.a].name, space.axes[one.b].name,
+          one.synergy ? "work together" : "undo one another", text_of(space, one.a, one.side_a),
+          text_of(space, one.b, one.side_b), of_text(one.both), of_text(one.only_a),
+          of_text(one.only_b), of_text(one.neither), one.p);
+      summary.lines.push_back(line);
+    }
+    pairs.push_back({{"a", space.axes[one.a].name},
+                     {"b", space.axes[one.b].name},
+                     {"named", one.named},
+                     {"tested", one.tested},
+                     {"synergy", one.synergy},
+                     {"p", one.p},
+                     {"share", one.share},
+                     {"side_a", text_of(space, one.a, one.side_a)},
+                     {"side_b", text_of(space, one.b, one.side_b)},
+                     {"both", json_of(one.both)},
+                     {"only_a", json_of(one.only_a)},
+                     {"only_b", json_of(one.only_b)},
+                     {"neither", json_of(one.neither)},
+                     {"sentence", line}});
+  }
+  summary.findings["failures"] = json_of(found.failures);
+  summary.findings["effects"] = std::move(effects);
+  summary.findings["pairs"] = std::move(pairs);
+  return {};
+}
+
+}  // namespace probe::search

@@ -1,0 +1,70 @@
+// What the searches by each method have in common. Internal to this folder.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "runtime/search/method/space.h"
+#include "runtime/search/search.h"
+#include "runtime/search/trials.h"
+#include "runtime/stats/intervals.h"
+
+namespace probe::search {
+
+struct Hunt {
+  const SearchOptions& options;
+  const BaseTask& base;
+  SearchSummary& summary;
+  std::unique_ptr<Solved> solved;  // null where nothing is to be proved
+  std::string round;               // the folder of the round that is under way
+  int rounds = 0;
+  std::vector<double> whole;  // of `minimal`: the case that is made smaller
+  // What is kept as a text at the end, with a comment for each.
+  std::vector<space::Point> kept;
+  std::vector<std::string> remarks;
+
+  const sema::Space& space() const { return base.space(); }
+  void tell(const std::string& what) const {
+    if (options.tell) options.tell(what);
+  }
+  // A new round of these points.
+  Result<PlannedPoints> plan(std::vector<space::Point> points);
+  // Runs the policy in the round until `asking` is done. `kind` names its draws.
+  Status try_out(const PlannedPoints& planned, const Trials::Asking& asking,
+                 const std::string& kind, int first_seed = 0);
+  // The same of points of a method's space: `ask` and `tell` are the method's, whose points are
+  // planned as they come, one round a batch.
+  struct PointMethod {
+    std::function<bool()> done;
+    std::function<std::span<const Point>()> ask;
+    std::function<void(std::span<const Outcome>)> tell;
+  };
+  Status try_points(const PointMethod& method, const std::string& kind, int first_seed = 0);
+  // What is drawn beside a point: the same for the same point, however often it is asked for.
+  std::uint64_t draw_of(const std::vector<double>& values) const;
+  std::string point_name(const std::vector<double>& values) const;
+  void keep(space::Point point, const std::string& remark);
+};
+
+// "12 of 40".
+std::string of_text(const stats::Count& count);
+Json json_of(const stats::Count& count);
+Json json_of(const stats::Interval& interval);
+// By axis, what is changed: {"light.power": 0.31, "words": "drop_on"}.
+Json json_of(const sema::Space& space, const std::vector<double>& values);
+
+Status search_boundary(Hunt& hunt);
+Status search_worst(Hunt& hunt);
+Status search_minimal(Hunt& hunt);
+// The case that `minimal` is asked about. Fails (kUsage) where it is none of the space.
+Result<std::vector<double>> case_of(const SearchOptions& options, const sema::Space& space);
+Status search_axes(Hunt& hunt);
+
+// "light.power 0.3, clutter 2" as values of all axes. Fails (kUsage, where = --at).
+Result<std::vector<double>> read_point(const sema::Space& space, const std::string& text);
+// Values of the axes of a case as json_of wrote it.
+Result<std::vector<double>> values_from(const sema::Space& space, const Json& changes);
+
+}  // namespace probe::search

@@ -1,0 +1,296 @@
+#include "runtime/search/points_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <span>
+#include <utility>
+
+#include "compiler/diag/text.h"
+#include "runtime/base/csv.h"
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
+#include "runtime/compile/files.h"
+
+namespace probe::search {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSuite = "points";
+constexpr const char* kFile = "points.probe";
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text.data(), text.size()));
+}
+
+// As a `use` in a file of `folder` says it.
+std::string use_of(const std::string& file, const std::string& folder) {
+  std::error_code error;
+  const fs::path relative = fs::relative(absolute_path(file), absolute_path(folder), error);
+  return error || relative.empty() ? absolute_path(file) : relative.generic_string();
+}
+
+// A text of several points, and which lines are whose.
+struct Pages {
+  std::string text;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> lines;  // by point, from 1, both included
+  std::map<std::string, std::size_t> tables;                   // file to point
+};
+
+class Page {
+ public:
+  Page(const BaseTask& base, std::string folder) : base_(base), folder_(std::move(folder)) {
+    pages_.text = "# Points of the space `" + base.space().name + "`, each as a variant.\nuse \"" +
+                  use_of(base.options().file, folder_) + "\"\n\n";
+    line_ = 4;
+  }
+
+  // The point's lines and its table; false, with the reason in `written`, where it has none.
+  Result<bool> add(std::size_t index, const space::Point& point, space::WrittenPoint& written,
+                   const std::string& tables, bool allowed, const std::string& remark = {}) {
+    written = space::write_point(base_.model(), base_.space(), point, tables, allowed);
+    if (!written.left_out.empty()) return false;
+    if (pages_.lines.size() <= index) pages_.lines.resize(index + 1);
+    std::string text = remark;
+    text += written.text;
+    const auto count = static_cast<std::uint32_t>(std::ranges::count(text, '\n'));
+    pages_.lines[index] = {line_, line_ + count - 1};
+    line_ += count;
+    pages_.text += text;
+    names_.push_back(point.name);
+    if (written.table) {
+      PROBE_TRY(write_file((fs::path(folder_) / written.table->file).string(),
+                           bytes_of(written.table->text)));
+      pages_.tables[written.table->file] = index;
+    }
+    return true;
+  }
+
+  Result<Pages> finish(const std::string& suite, const std::string& file) {
+    pages_.text += "\nsuite " + suite + " { tasks { " + base_.task().name;
+    for (const std::string& name : names_) pages_.text += ", " + name;
+    pages_.text += " }; seeds 0 }\n";
+    PROBE_TRY(write_file((fs::path(folder_) / file).string(), bytes_of(pages_.text)));
+    return pages_;
+  }
+
+ private:
+  const BaseTask& base_;
+  std::string folder_;
+  Pages pages_;
+  std::uint32_t line_ = 1;
+  std::vector<std::string> names_;
+};
+
+// Which points are to blame, with what is said of each first.
+std::map<std::size_t, std::string> blamed(const Compilation& compilation, const Pages& pages,
+                                          const std::string& file) {
+  std::map<std::size_t, std::string> out;
+  const auto point_at = [&](const Span& span) -> std::optional<std::size_t> {
+    if (span.is_none()) return std::nullopt;
+    const SourceFile& source = compilation.sources.file(span.file);
+    const std::string name = fs::path(source.name()).filename().string();
+    for (const auto& [table, point] : pages.tables) {
+      if (fs::path(table).filename().string() == name) return point;
+    }
+    if (name != file) return std::nullopt;
+    const std::uint32_t line = source.line_of(span.begin);
+    for (std::size_t i = 0; i < pages.lines.size(); ++i) {
+      if (line >= pages.lines[i].first && line <= pages.lines[i].second) return i;
+    }
+    return std::nullopt;
+  };
+  for (const Diagnostic& said : compilation.diagnostics.items()) {
+    // What is out of the picture is no fair start either.
+    if (said.severity != Severity::kError && said.code != Code::P0505) continue;
+    std::optional<std::size_t> point = point_at(said.primary);
+    for (std::size_t i = 0; i < said.labels.size() && !point; ++i)
+      point = point_at(said.labels[i].span);
+    if (point) out.try_emplace(*point, std::string(info(said.code).text) + ": " + said.message);
+  }
+  return out;
+}
+
+class Planner {
+ public:
+  Planner(const BaseTask& base, std::string folder) : base_(base), folder_(std::move(folder)) {}
+
+  Result<PlannedPoints> plan(std::vector<space::Point> points) {
+    std::vector<PlannedPoint> planned = with_proofs(std::move(points));
+    std::vector<bool> alive(planned.size(), true);
+    while (true) {
+      PROBE_ASSIGN(Attempt attempt, compile(planned, alive, kFile, true));
+      if (attempt.compilation.ok && attempt.blamed.empty())
+        return finish(std::move(planned), std::move(attempt));
+      if (attempt.blamed.empty())
+        return Failure{
+            Fault::kUsage,
+            "the points of space `" + base_.space().name + "` do not compile:\n" +
+                render_text(attempt.compilation.diagnostics, attempt.compilation.sources),
+            (fs::path(folder_) / kFile).string()};
+      PROBE_TRY(sort_out(attempt.blamed, planned, alive));
+    }
+  }
+
+ private:
+  std::vector<PlannedPoint> with_proofs(std::vector<space::Point> points) const {
+    const std::vector<double> own = space::own_values(base_.space());
+    std::vector<PlannedPoint> planned, proofs;
+    for (space::Point& point : points) {
+      PlannedPoint one{std::move(point), {}, {}, {}, kBase};
+      const std::vector<double> placed = space::placed_values(base_.space(), one.point.values);
+      if (placed == one.point.values && placed != own) {
+        one.proof = planned.size();
+      } else if (placed != own) {
+        one.proof = points.size() + proofs.size();
+        space::Point proof = one.point;
+        proof.name += "_placed";
+        proof.values = placed;
+        proofs.push_back({std::move(proof), {}, {}, {}, one.proof});
+      }
+      planned.push_back(std::move(one));
+    }
+    planned.insert(planned.end(), proofs.begin(), proofs.end());
+    return planned;
+  }
+
+  struct Attempt {
+    Compilation compilation;
+    std::map<std::size_t, std::string> blamed;
+  };
+
+  Result<Attempt> compile(std::vector<PlannedPoint>& planned, std::vector<bool>& alive,
+                          const std::string& file, bool wants_plan) {
+    Page page(base_, folder_);
+    for (std::size_t i = 0; i < planned.size(); ++i) {
+      if (!alive[i]) continue;
+      space::WrittenPoint written;
+      PROBE_ASSIGN(const bool is_there, page.add(i, planned[i].point, written, "", false));
+      alive[i] = is_there;
+      planned[i].starts = written.starts;
+      if (!is_there) planned[i].why = written.left_out;
+    }
+    PROBE_ASSIGN(const Pages pages, page.finish(kSuite, file));
+    compile::FilesRequest request{.assets = base_.options().assets,
+                                  .library = base_.options().library,
+                                  .suite = kSuite,
+                                  .wants_plan = wants_plan};
+    PROBE_ASSIGN(Compilation compilation,
+                 compile::compile_files({(fs::path(folder_) / file).string()}, request));
+    auto to_blame = blamed(compilation, pages, file);
+    return Attempt{std::move(compilation), std::move(to_blame)};
+  }
+
+  // What the compiler refuses is left out; of a point that moves things only the starts that it
+  // refuses.
+  Status sort_out(const std::map<std::size_t, std::string>& to_blame,
+                  std::vector<PlannedPoint>& planned, std::vector<bool>& alive) {
+    std::vector<PlannedPoint> single;  // a start each
+    std::vector<std::size_t> of;
+    for (const auto& [i, why] : to_blame) {
+      planned[i].why = why;
+      const bool moves = planned[i].point.values != space::own_values(base_.space()) &&
+                         space::placed_values(base_.space(), planned[i].point.values) !=
+                             space::own_values(base_.space());
+      if (!moves || planned[i].starts.size() < 2) {
+        alive[i] = false;
+        continue;
+      }
+      for (const std::uint32_t start : planned[i].starts) {
+        PlannedPoint one = planned[i];
+        one.point.name += "_s" + std::to_string(start);
+        one.point.starts = {start};
+        single.push_back(std::move(one));
+        of.push_back(i);
+      }
+      planned[i].point.starts.clear();
+    }
+    std::vector<bool> is_fair(single.size(), true);
+    while (!single.empty()) {
+      PROBE_ASSIGN(const Attempt attempt, compile(single, is_fair, "starts.probe", false));
+      if (attempt.blamed.empty()) break;
+      for (const auto& [k, why] : attempt.blamed) is_fair[k] = false;
+    }
+    for (std::size_t k = 0; k < single.size(); ++k) {
+      if (is_fair[k]) planned[of[k]].point.starts.push_back(single[k].point.starts.front());
+    }
+    for (const std::size_t i : std::set(of.begin(), of.end()))
+      alive[i] = !planned[i].point.starts.empty();
+    for (std::size_t k = 0; k < single.size(); ++k) {
+      std::error_code ignored;
+      fs::remove(fs::path(folder_) / (single[k].point.name + ".csv"), ignored);
+    }
+    std::error_code ignored;
+    fs::remove(fs::path(folder_) / "starts.probe", ignored);
+    return {};
+  }
+
+  Result<PlannedPoints> finish(std::vector<PlannedPoint> planned, Attempt attempt) {
+    PROBE_ASSIGN(plan::Plan plan, plan::Plan::from_bytes(std::move(attempt.compilation.plan)));
+    PlannedPoints out{std::move(plan), 0, std::move(planned), attempt.compilation.asset_root};
+    const auto index_of = [&](const std::string& name) { return out.plan.find_task(name); };
+    const auto base = index_of(base_.task().name);
+    if (!base) return Failure{Fault::kInternal, "the plan lacks the base task", folder_};
+    out.base_task = *base;
+    std::string table = "task";
+    for (const sema::SpaceAxis& axis : base_.space().axes) table += "," + csv_cell(axis.name);
+    table += ",starts,left_out\n";
+    for (PlannedPoint& one : out.points) {
+      one.task = index_of(one.point.name);
+      if (!one.task) one.starts.clear();
+      table += one.point.name;
+      for (std::size_t i = 0; i < one.point.values.size(); ++i)
+        table += "," + csv_cell(space::value_text(base_.space().axes[i], one.point.values[i]));
+      table += "," + std::to_string(one.starts.size()) + "," + csv_cell(one.why) + "\n";
+    }
+    PROBE_TRY(write_file((fs::path(folder_) / "points.csv").string(), bytes_of(table)));
+    return out;
+  }
+
+  const BaseTask& base_;
+  std::string folder_;
+};
+
+}  // namespace
+
+Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
+                                  const std::string& folder) {
+  PROBE_TRY(make_lasting_folders(folder));
+  return Planner(base, folder).plan(std::move(points));
+}
+
+Status write_found(const BaseTask& base, const std::vector<space::Point>& points,
+                   const std::vector<std::string>& remarks, const std::string& file) {
+  const std::string folder = fs::path(file).parent_path().string();
+  const std::string name = fs::path(file).filename().string();
+  // Twice: what is confounded is known when it was looked at.
+  std::set<std::size_t> allowed;
+  for (int round = 0; round < 2; ++round) {
+    Page page(base, folder);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      space::WrittenPoint written;
+      PROBE_ASSIGN([[maybe_unused]] const bool is_there,
+                   page.add(i, points[i], written, "", allowed.contains(i), remarks[i]));
+    }
+    PROBE_ASSIGN(const Pages pages, page.finish("found", name));
+    if (round == 1) break;
+    PROBE_ASSIGN(const Compilation compilation,
+                 compile::compile_files({file}, {.assets = base.options().assets,
+                                                 .library = base.options().library,
+                                                 .wants_plan = false}));
+    for (const Diagnostic& said : compilation.diagnostics.items()) {
+      if (said.code != Code::P0701) continue;
+      const SourceFile& source = compilation.sources.file(said.primary.file);
+      if (fs::path(source.name()).filename().string() != name) continue;
+      const std::uint32_t line = source.line_of(said.primary.begin);
+      for (std::size_t i = 0; i < pages.lines.size(); ++i) {
+        if (line >= pages.lines[i].first && line <= pages.lines[i].second) allowed.insert(i);
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace probe::search

@@ -1,0 +1,47 @@
+// Points of a space compiled: one text, one frozen plan, and which of them are fair.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compiler/space/points.h"
+#include "runtime/plan/plan.h"
+#include "runtime/search/base_task.h"
+
+namespace probe::search {
+
+// One point, as it came out.
+struct PlannedPoint {
+  space::Point point;
+  std::optional<std::uint32_t> task;  // of the plan's tasks; none: left out
+  // Of the base task's starts those in which it is fair, by their numbers there; the plan's task
+  // has them as its starts 0, 1, ...
+  std::vector<std::uint32_t> starts;
+  std::string why;  // it is left out, or some of its starts are: the compiler's first word
+  // The point with the same things in the same places and nothing else changed, which the expert is
+  // asked of: of `points`, or kBase.
+  std::size_t proof = 0;
+};
+inline constexpr std::size_t kBase = static_cast<std::size_t>(-1);
+
+struct PlannedPoints {
+  plan::Plan plan;  // its suite `points` has the base task and all points that are fair
+  std::uint32_t base_task = 0;
+  std::vector<PlannedPoint> points;  // those that were asked for, then others that prove them
+  AssetRoot assets;                  // where the plan's files lie
+};
+
+// Writes `folder`/points.probe with its tables and points.csv, which says what each task changes.
+// A point that the compiler refuses is left out, with the reason; one that moves things, start by
+// start. Fails (kUsage) where the base task itself is refused there.
+Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
+                                  const std::string& folder);
+
+// A text of these points as one writes it to keep: `file` with its tables beside it, a suite
+// `found`. Comments say of each what `remarks` has for it.
+Status write_found(const BaseTask& base, const std::vector<space::Point>& points,
+                   const std::vector<std::string>& remarks, const std::string& file);
+
+}  // namespace probe::search

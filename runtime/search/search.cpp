@@ -1,0 +1,180 @@
+#include "runtime/search/search.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <span>
+
+#include "runtime/base/file.h"
+#include "runtime/base/paths.h"
+#include "runtime/search/hunt.h"
+
+namespace probe::search {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFormat = "vlaprobe search";
+constexpr int kVersion = 1;
+constexpr std::string_view kMethods[] = {"boundary", "worst", "minimal", "axes"};
+
+std::string file_of(const std::string& folder) {
+  return (fs::path(folder) / "search.json").string();
+}
+
+Status write_json(const std::string& path, const Json& json) {
+  const std::string text = json.dump(1) + "\n";
+  return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+// What a folder is begun with; only the budget may grow later.
+Json asked_of(const SearchOptions& options, const BaseTask& base, const std::string& content,
+              const std::vector<double>& whole) {
+  Json asked = {{"method", to_text(options.method)},
+                {"space", base.space().name},
+                {"task", base.task().name},
+                {"text_sha256", base.hash()},
+                {"policy", options.run.name.empty() ? options.run.policy : options.run.name},
+                {"policy_content", content},
+                {"seed", options.seed},
+                {"error", options.error},
+                {"levels", options.levels},
+                {"proved_by_expert", options.proves}};
+  if (options.method == Method::kMinimal) asked["case"] = json_of(base.space(), whole);
+  return asked;
+}
+
+Result<Json> read_json(const std::string& folder) {
+  PROBE_ASSIGN(const std::string text,
+               read_file(file_of(folder), {.most = std::size_t{256} << 20, .code = Fault::kStore}));
+  Json json = Json::parse(text);
+  if (json.is_discarded() || json.value("format", "") != kFormat)
+    return Failure{Fault::kStore, "it is not what a search wrote", file_of(folder)};
+  if (json.value("version", Json(0)) != Json(kVersion))
+    return Failure{Fault::kStore,
+                   "it was written by another version of the format (" +
+                       json.value("version", Json(0)).dump() + ", this program reads " +
+                       std::to_string(kVersion) + ")",
+                   file_of(folder)};
+  return json;
+}
+
+// The folder is this search's, or none yet.
+Status check_folder(const std::string& folder, const Json& asked) {
+  if (!is_there(file_of(folder))) {
+    if (!is_folder(folder)) return {};
+    PROBE_ASSIGN(const auto names, list_folder(folder));
+    if (names.empty()) return {};
+    return Failure{Fault::kUsage, "the folder is there and is no search's: choose another", folder};
+  }
+  PROBE_ASSIGN(const Json there, read_json(folder));
+  for (const auto& [key, value] : asked.items()) {
+    const Json* const before = there.at("asked").find(key);
+    if (before != nullptr && *before == value) continue;
+    return Failure{Fault::kUsage,
+                   "the folder was begun with another " + key + " (" +
+                       (before == nullptr ? "none" : before->dump()) + ", now " + value.dump() +
+                       "): choose another folder",
+                   folder};
+  }
+  return {};
+}
+
+Status check_options(const SearchOptions& options) {
+  const auto refused = [](const std::string& why, const char* where) {
+    return Failure{Fault::kUsage, why, where};
+  };
+  if (options.levels < 3 || options.levels > 401)
+    return refused("expected 3 to 401 levels", "--levels");
+  if (!(options.error > 0 && options.error <= 0.5))
+    return refused("expected more than 0 % and at most 50 %", "--error");
+  if (options.budget && (*options.budget < 1 || *options.budget > 1'000'000))
+    return refused("expected 1 to 1,000,000 trials", "--budget");
+  if (options.run.only_success || options.run.live)
+    return refused("a search asks for every outcome, in a world that waits", "--live");
+  return {};
+}
+
+}  // namespace
+
+std::string_view to_text(Method method) { return kMethods[static_cast<std::size_t>(method)]; }
+
+std::optional<Method> method_of(std::string_view word) {
+  for (std::size_t i = 0; i < std::size(kMethods); ++i) {
+    if (kMethods[i] == word) return static_cast<Method>(i);
+  }
+  return std::nullopt;
+}
+
+Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
+  PROBE_TRY(check_options(options));
+  PROBE_ASSIGN(const run::Actor actor, run::choose_actor(options.run));
+  PROBE_ASSIGN(const std::unique_ptr<BaseTask> base, BaseTask::open(options.text, said));
+  std::vector<double> whole;
+  if (options.method == Method::kMinimal) {
+    PROBE_ASSIGN(whole, case_of(options, base->space()));
+  }
+  const Json asked = asked_of(options, *base, actor.traits.content, whole);
+  PROBE_TRY(check_folder(options.run.out, asked));
+  PROBE_TRY(make_lasting_folders(options.run.out));
+  SearchSummary summary;
+  summary.findings = {{"format", kFormat},
+                      {"version", kVersion},
+                      {"asked", asked},
+                      {"file", absolute_path(options.text.file)},
+                      {"done", false}};
+  if (!is_there(file_of(options.run.out)))
+    PROBE_TRY(write_json(file_of(options.run.out), summary.findings));
+  Hunt hunt{options, *base, summary, nullptr, "", 0, std::move(whole), {}, {}};
+  constexpr Status (*kSearch[])(Hunt&) = {search_boundary, search_worst, search_minimal,
+                                          search_axes};
+  PROBE_TRY(kSearch[static_cast<std::size_t>(options.method)](hunt));
+  Json& found = summary.findings;
+  found["done"] = summary.is_done;
+  found["trials"] = summary.trials;
+  found["episodes"] = summary.episodes;
+  found["left_out"] = summary.left_out;
+  if (hunt.solved) {
+    found["expert_starts"] = hunt.solved->known();
+    found["expert_unsolved"] = hunt.solved->unsolved();
+    found["expert_not_attempted"] = hunt.solved->not_attempted();
+    if (hunt.solved->known() > 0 && hunt.solved->not_attempted() == hunt.solved->known())
+      return Failure{Fault::kUsage,
+                     "the expert has no skills for `" + base->task().name +
+                         "`, so nothing here can be shown to be solvable; --unproved searches "
+                         "without that",
+                     options.text.file};
+  }
+  if (!hunt.kept.empty()) {
+    const std::string file = (fs::path(options.run.out) / "found.probe").string();
+    PROBE_TRY(write_found(*base, hunt.kept, hunt.remarks, file));
+    summary.notes.push_back("what was found, as variants to keep: " + file);
+  }
+  Json lines = Json::array();
+  for (const std::string& line : summary.lines) lines.push_back(line);
+  found["lines"] = std::move(lines);
+  PROBE_TRY(write_json(file_of(options.run.out), found));
+  return summary;
+}
+
+Result<SearchSummary> read_search(const std::string& folder) {
+  SearchSummary summary;
+  PROBE_ASSIGN(summary.findings, read_json(folder));
+  const auto count = [&](const char* key) {
+    const Json* const value = summary.findings.find(key);
+    return value != nullptr && value->is_number() ? value->get<int>() : 0;
+  };
+  summary.trials = count("trials");
+  summary.episodes = count("episodes");
+  summary.left_out = count("left_out");
+  const Json* const done = summary.findings.find("done");
+  summary.is_done = done != nullptr && done->is_boolean() && done->get<bool>();
+  if (const Json* const lines = summary.findings.find("lines")) {
+    for (const Json& line : *lines) {
+      if (line.is_string()) summary.lines.push_back(line.text());
+    }
+  }
+  return summary;
+}
+
+}  // namespace probe::search

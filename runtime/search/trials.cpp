@@ -1,0 +1,280 @@
+#include "runtime/search/trials.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "runtime/base/hash_number.h"
+#include "runtime/base/paths.h"
+#include "runtime/base/sha256.h"
+#include "runtime/run/policies.h"
+#include "runtime/store/not_attempted.h"
+#include "runtime/store/store.h"
+
+namespace probe::search {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<bool> success_of(const store::ResultRow& row) {
+  if (row.invalid) return std::nullopt;
+  for (const store::MetricValue& metric : row.metrics) {
+    if (metric.name == "success") return metric.value != 0;
+  }
+  return std::nullopt;
+}
+
+const std::vector<std::uint32_t>& no_starts() {
+  static const std::vector<std::uint32_t> none;
+  return none;
+}
+
+std::uint64_t hash_of(std::uint64_t seed, const std::string& kind, const std::string& task,
+                      std::uint64_t number, std::uint64_t attempt) {
+  return little_endian_number(Hasher()
+                                  .text("search trial")
+                                  .u64(seed)
+                                  .text(kind)
+                                  .text(task)
+                                  .u64(number)
+                                  .u64(attempt)
+                                  .finish());
+}
+
+// One seed: the expert draws nothing.
+constexpr int kExpertSeed = 0;
+
+}  // namespace
+
+Solved::Key Solved::key_of(const PlannedPoints& planned, const Question& question) const {
+  if (question.point == kBase) return {space::own_values(base_.space()), 0, question.start};
+  const space::Point& point = planned.points[question.point].point;
+  return {point.values, point.draw, question.start};
+}
+
+std::optional<bool> Solved::is_solved(const PlannedPoints& planned,
+                                      const Question& question) const {
+  const auto found = known_.find(key_of(planned, question));
+  if (found == known_.end() || found->second == Answer::kNoSkill) return std::nullopt;
+  return found->second == Answer::kYes;
+}
+
+int Solved::unsolved() const {
+  return static_cast<int>(
+      std::ranges::count_if(known_, [](const auto& one) { return one.second == Answer::kNo; }));
+}
+
+int Solved::not_attempted() const {
+  return static_cast<int>(std::ranges::count_if(
+      known_, [](const auto& one) { return one.second == Answer::kNoSkill; }));
+}
+
+Status Solved::find_out(const PlannedPoints& planned, std::span<const Question> questions) {
+  std::vector<run::EpisodeJob> jobs;
+  std::map<store::EpisodeKey, Key> keys;
+  for (const Question& question : questions) {
+    const Key key = key_of(planned, question);
+    if (known_.contains(key)) continue;
+    const bool is_base = question.point == kBase;
+    const std::uint32_t task = is_base ? planned.base_task : *planned.points[question.point].task;
+    std::size_t index = question.start;
+    if (!is_base) {
+      const auto& starts = planned.points[question.point].starts;
+      index = static_cast<std::size_t>(std::ranges::find(starts, question.start) - starts.begin());
+    }
+    const run::EpisodeJob job{task, static_cast<std::uint32_t>(index), kExpertSeed};
+    if (keys.emplace(run::key_of(planned.plan, job), key).second) jobs.push_back(job);
+  }
+  if (jobs.empty()) return {};
+  run::RunOptions options = options_;
+  options.policy = "expert";
+  options.out = (fs::path(folder_) / ("expert-" + std::to_string(++folders_))).string();
+  const auto keep = [&](const store::ResultRow& row) {
+    const auto known = keys.find(store::key_of(row));
+    if (known == keys.end()) return;
+    const std::optional<bool> success = success_of(row);
+    const bool no_skill = row.invalid && row.invalid->starts_with(store::kNotAttempted);
+    // A world that does not settle as the text says is no fair start either.
+    known_[known->second] = success.value_or(false) ? Answer::kYes
+                            : no_skill              ? Answer::kNoSkill
+                                                    : Answer::kNo;
+  };
+  options.progress = [&](const run::RunProgress& progress) {
+    if (progress.row != nullptr) keep(*progress.row);
+  };
+  bool is_first = true;
+  options.next = [&]() -> Result<std::vector<run::EpisodeJob>> {
+    return std::exchange(is_first, false) ? jobs : std::vector<run::EpisodeJob>{};
+  };
+  options.assets = planned.assets;
+  episodes_ += static_cast<int>(jobs.size());
+  // Those of an earlier call.
+  PROBE_ASSIGN(const auto record, store::find_run_record(options.out));
+  if (record && record->identity.plan_root == to_hex(planned.plan.root())) {
+    PROBE_ASSIGN(const auto rows, store::read_results(options.out));
+    for (const store::ResultRow& row : rows) keep(row);
+    std::erase_if(jobs, [&](const run::EpisodeJob& job) {
+      return known_.contains(keys.at(run::key_of(planned.plan, job)));
+    });
+    if (jobs.empty()) return {};
+  }
+  PROBE_ASSIGN([[maybe_unused]] const run::RunSummary summary, run::run(planned.plan, options));
+  return {};
+}
+
+Trials::Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptions options,
+               Solved* solved, std::uint64_t seed, std::string kind, int first_seed)
+    : base_(base),
+      planned_(planned),
+      options_(std::move(options)),
+      solved_(solved),
+      seed_(seed),
+      kind_(std::move(kind)),
+      first_seed_(first_seed) {}
+
+void Trials::keep(const store::ResultRow& row) {
+  if (row.invalid && store::is_open(row)) {
+    known_[store::key_of(row)] = std::nullopt;
+    return;
+  }
+  known_[store::key_of(row)] = success_of(row);
+}
+
+Status Trials::read_known() {
+  PROBE_ASSIGN(const auto record, store::find_run_record(options_.out));
+  if (!record) return {};
+  PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
+  // Invalid ones are run again.
+  for (const store::ResultRow& row : rows) {
+    if (!row.invalid) keep(row);
+  }
+  return {};
+}
+
+// Of each trial a start that is fair, drawn anew for every one: trials of a point are independent
+// draws from its starts, whether or not some are the same.
+Result<std::vector<std::optional<Trials::Place>>> Trials::places_of(std::span<const Trial> trials) {
+  struct Open {
+    std::vector<std::uint32_t> starts;  // that may still be drawn
+    std::uint64_t attempt = 0;
+  };
+  std::vector<std::optional<Place>> places(trials.size());
+  std::vector<Open> open(trials.size());
+  std::vector<std::size_t> waiting;
+  std::vector<std::uint32_t> base_starts(base_.task().starts.size());
+  for (std::uint32_t i = 0; i < base_starts.size(); ++i) base_starts[i] = i;
+  const auto point_of = [&](const Trial& trial) -> const PlannedPoint* {
+    return trial.point == kBase ? nullptr : &planned_.points[trial.point];
+  };
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const PlannedPoint* const point = point_of(trials[t]);
+    open[t].starts = point == nullptr ? base_starts : point->task ? point->starts : no_starts();
+    if (point != nullptr && point->proof != kBase && !planned_.points[point->proof].task)
+      open[t].starts.clear();
+    if (!open[t].starts.empty()) waiting.push_back(t);
+  }
+  while (!waiting.empty()) {
+    std::vector<Solved::Question> questions;
+    std::vector<std::uint32_t> drawn;
+    for (const std::size_t t : waiting) {
+      const PlannedPoint* const point = point_of(trials[t]);
+      const std::string& name = point == nullptr ? base_.task().name : point->point.name;
+      auto& starts = open[t].starts;
+      const std::uint64_t hash = hash_of(seed_, kind_, name, trials[t].number, open[t].attempt++);
+      drawn.push_back(starts[hash % starts.size()]);
+      questions.push_back({point == nullptr ? kBase : point->proof, drawn.back()});
+    }
+    if (solved_ != nullptr) PROBE_TRY(solved_->find_out(planned_, questions));
+    std::vector<std::size_t> again;
+    for (std::size_t w = 0; w < waiting.size(); ++w) {
+      const std::size_t t = waiting[w];
+      const PlannedPoint* const point = point_of(trials[t]);
+      auto& starts = open[t].starts;
+      if (solved_ != nullptr && !solved_->is_solved(planned_, questions[w]).value_or(false)) {
+        std::erase(starts, drawn[w]);
+        if (!starts.empty()) again.push_back(t);
+        continue;
+      }
+      Place place;
+      place.task = point == nullptr ? planned_.base_task : *point->task;
+      place.index = drawn[w];
+      if (point != nullptr)
+        place.index = static_cast<std::size_t>(std::ranges::find(point->starts, drawn[w]) -
+                                               point->starts.begin());
+      places[t] = place;
+    }
+    waiting = std::move(again);
+  }
+  // A policy that draws does another episode each time; one that does not would repeat itself.
+  for (std::optional<Place>& place : places) {
+    if (!place || !draws_) continue;
+    place->seed = first_seed_ + uses_[{place->task, static_cast<std::uint32_t>(place->index)}]++;
+  }
+  return places;
+}
+
+Outcome Trials::outcome_of(const Place& place) const {
+  const run::EpisodeJob job{place.task, static_cast<std::uint32_t>(place.index), place.seed};
+  const std::optional<bool> success = known_.at(run::key_of(planned_.plan, job));
+  if (!success) return Outcome::kLeftOut;
+  return *success ? Outcome::kSucceeded : Outcome::kFailed;
+}
+
+// Tells what is known and asks on, until something has to be run.
+Result<std::vector<run::EpisodeJob>> Trials::advance() {
+  while (true) {
+    if (!asked_.empty()) {
+      std::vector<Outcome> outcomes;
+      for (const std::optional<Place>& place : asked_) {
+        outcomes.push_back(place ? outcome_of(*place) : Outcome::kLeftOut);
+        if (!place) ++unfair_;
+        if (place && outcomes.back() == Outcome::kLeftOut) ++invalid_;
+      }
+      asked_.clear();
+      asking_->tell(outcomes);
+    }
+    PROBE_ASSIGN(const std::vector<Trial> trials, asking_->ask());
+    if (trials.empty()) return std::vector<run::EpisodeJob>{};
+    PROBE_ASSIGN(asked_, places_of(trials));
+    std::vector<run::EpisodeJob> jobs;
+    std::set<store::EpisodeKey> wanted;
+    for (const std::optional<Place>& place : asked_) {
+      if (!place) continue;
+      const run::EpisodeJob job{place->task, static_cast<std::uint32_t>(place->index), place->seed};
+      const store::EpisodeKey key = run::key_of(planned_.plan, job);
+      if (!known_.contains(key) && wanted.insert(key).second) jobs.push_back(job);
+    }
+    if (!jobs.empty()) return jobs;
+  }
+}
+
+Status Trials::run(const Asking& asking) {
+  asking_ = &asking;
+  PROBE_ASSIGN(const run::PolicyChoice choice,
+               run::choose_policy(options_.policy, options_.accepts_any_certificate));
+  draws_ = choice.traits.draws;
+  PROBE_TRY(read_known());
+  // What is known needs no policy, and no server that is there.
+  PROBE_ASSIGN(std::vector<run::EpisodeJob> jobs, advance());
+  if (jobs.empty()) return {};
+  run::RunOptions options = options_;
+  options.assets = planned_.assets;
+  const auto told = options.progress;
+  options.progress = [&](const run::RunProgress& progress) {
+    if (progress.row != nullptr) {
+      keep(*progress.row);
+      ++ran_;
+    }
+    if (told) told(progress);
+  };
+  bool is_first = true;
+  options.next = [&]() -> Result<std::vector<run::EpisodeJob>> {
+    if (std::exchange(is_first, false)) return jobs;
+    return advance();
+  };
+  PROBE_ASSIGN(const run::RunSummary summary, run::run(planned_.plan, options));
+  notes_.insert(notes_.end(), summary.notes.begin(), summary.notes.end());
+  return {};
+}
+
+}  // namespace probe::search

@@ -1,0 +1,122 @@
+// Trials of a search as episodes: which start and seed each has, whether that is fair, how it
+// ended.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/run/episode.h"
+#include "runtime/run/run.h"
+#include "runtime/search/method/outcome.h"
+#include "runtime/search/points_file.h"
+
+namespace probe::search {
+
+// Whether the expert solves a start of the base task where things lie as a point has them: known
+// once for all points that agree in that.
+class Solved {
+ public:
+  // `options`: of a run of the expert into folders below `folder`, each made once.
+  Solved(const BaseTask& base, run::RunOptions options, std::string folder)
+      : base_(base), options_(std::move(options)), folder_(std::move(folder)) {}
+
+  // Where the next folders are made.
+  void into(std::string folder) {
+    folder_ = std::move(folder);
+    folders_ = 0;
+  }
+
+  struct Question {
+    std::size_t point = kBase;  // of the plan's points, one that proves others
+    std::uint32_t start = 0;    // of the base task's
+  };
+  // Runs the expert where it is not known yet. What is asked must be in one plan.
+  Status find_out(const PlannedPoints& planned, std::span<const Question> questions);
+  // Of what was found out; nothing where the expert has no skills for it.
+  std::optional<bool> is_solved(const PlannedPoints& planned, const Question& question) const;
+
+  int episodes() const { return episodes_; }
+  int known() const { return static_cast<int>(known_.size()); }
+  int unsolved() const;
+  int not_attempted() const;
+
+ private:
+  // Placed values, what was drawn for them, start.
+  using Key = std::tuple<std::vector<double>, std::uint64_t, std::uint32_t>;
+  enum class Answer : std::uint8_t { kYes, kNo, kNoSkill };
+  Key key_of(const PlannedPoints& planned, const Question& question) const;
+
+  const BaseTask& base_;
+  run::RunOptions options_;
+  std::string folder_;
+  int folders_ = 0, episodes_ = 0;
+  std::map<Key, Answer> known_;
+};
+
+// A trial of a point: the `number`-th of its kind there.
+struct Trial {
+  std::size_t point = 0;  // of the plan's points, or kBase
+  std::uint64_t number = 0;
+};
+
+// Tells a method what its trials came to, and runs what it asks for.
+class Trials {
+ public:
+  // The method, as numbers: what it asks now, empty when it is done; and its being told.
+  struct Asking {
+    std::function<Result<std::vector<Trial>>()> ask;
+    std::function<void(std::span<const Outcome>)> tell;
+  };
+
+  // `options`: of the policy's run into its folder, which may hold episodes. `solved` may be null:
+  // nothing is proved, then. `kind` names the draws of starts: another kind draws other ones.
+  Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptions options,
+         Solved* solved, std::uint64_t seed, std::string kind, int first_seed = 0);
+
+  // Until the method is done. Fails as run() does; what was run until then is stored, and the same
+  // call goes on.
+  Status run(const Asking& asking);
+
+  int episodes() const { return static_cast<int>(known_.size()); }  // that came to an end
+  int ran() const { return ran_; }                                  // by this call
+  int unfair() const { return unfair_; }    // trials whose point no start is fair of
+  int invalid() const { return invalid_; }  // trials whose episodes count neither way
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  struct Place {
+    std::uint32_t task = 0;
+    std::size_t index = 0;  // of the plan's starts of it
+    int seed = 0;
+  };
+  Result<std::vector<std::optional<Place>>> places_of(std::span<const Trial> trials);
+  Result<std::vector<run::EpisodeJob>> advance();
+  Status read_known();
+  void keep(const store::ResultRow& row);
+  Outcome outcome_of(const Place& place) const;
+
+  const BaseTask& base_;
+  const PlannedPoints& planned_;
+  run::RunOptions options_;
+  Solved* solved_;
+  std::uint64_t seed_;
+  std::string kind_;
+  int first_seed_ = 0;
+  bool draws_ = false;
+  const Asking* asking_ = nullptr;
+  std::vector<std::optional<Place>> asked_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses_;  // of a task's start
+  std::map<store::EpisodeKey, std::optional<bool>> known_;       // success; none: invalid
+  int ran_ = 0, unfair_ = 0, invalid_ = 0;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace probe::search

@@ -1,0 +1,82 @@
+// The smallest changes that break a policy, over all axes together; what was found is confirmed by
+// trials that took no part in finding it.
+#include <fmt/format.h>
+
+#include "runtime/search/hunt.h"
+#include "runtime/search/method/confirm.h"
+#include "runtime/search/method/worst.h"
+#include "runtime/search/scale.h"
+
+namespace probe::search {
+namespace {
+
+// Seeds of what confirms: none that the search has had.
+constexpr int kFreshSeeds = 1'000'000;
+
+}  // namespace
+
+Status search_worst(Hunt& hunt) {
+  const sema::Space& space = hunt.space();
+  const Space axes = method_space(space);
+  WorstOptions options;
+  options.seed = hunt.options.seed;
+  if (hunt.options.budget) {
+    // A round is points times repeats; a last look and the confirmation take some more.
+    options.rounds = std::max(2, *hunt.options.budget / (options.points * options.repeats));
+  }
+  Worst worst(axes, options);
+  PROBE_TRY(hunt.try_points({[&] { return worst.done(); }, [&] { return worst.ask(); },
+                             [&](std::span<const Outcome> told) { worst.tell(told); }},
+                            "worst"));
+  const std::vector<Candidate> candidates = worst.candidates();
+  SearchSummary& summary = hunt.summary;
+  Json cases = Json::array();
+  if (candidates.empty()) {
+    summary.lines.push_back(fmt::format(
+        "nothing failed in {} trials: no case is claimed, which does not say that there is none",
+        worst.trials()));
+  } else {
+    hunt.tell(fmt::format("{} cases to be confirmed", candidates.size()));
+    Confirm confirm(axes, points_of(candidates), {});
+    PROBE_TRY(hunt.try_points({[&] { return confirm.done(); }, [&] { return confirm.ask(); },
+                               [&](std::span<const Outcome> told) { confirm.tell(told); }},
+                              "confirm", kFreshSeeds));
+    const Confirmation found = confirm.confirmation();
+    summary.findings["own_failures"] = json_of(found.own);
+    summary.findings["rate"] = found.rate;
+    std::size_t confirmed = 0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const ConfirmedCase& one = found.cases[i];
+      const std::vector<double> values = values_of(space, candidates[i].point);
+      const std::string changes = space::point_text(space, values);
+      std::string line = fmt::format("case {}: {}: fails in {} fresh trials", i + 1, changes,
+                                     of_text(one.failures));
+      line += one.confirmed ? fmt::format(", in {:.0f} % or more of all (the task itself: {})",
+                                          100 * one.low, of_text(found.own))
+                            : ", which is not confirmed: the best of many is lucky";
+      summary.lines.push_back(line);
+      const space::Point point{hunt.point_name(values), values, hunt.draw_of(values), {}};
+      cases.push_back({{"name", point.name},
+                       {"changes", json_of(space, values)},
+                       {"text", changes},
+                       {"distance", candidates[i].distance},
+                       {"search_failures", json_of(candidates[i].failures)},
+                       {"failures", json_of(one.failures)},
+                       {"at_least", one.low},
+                       {"p", one.p},
+                       {"confirmed", one.confirmed},
+                       {"sentence", line}});
+      if (!one.confirmed) continue;
+      ++confirmed;
+      hunt.keep(point, line);
+    }
+    if (confirmed == 0)
+      summary.lines.push_back(
+          "no case fails more often than the task itself does, as far as fresh "
+          "trials tell");
+  }
+  summary.findings["cases"] = std::move(cases);
+  return {};
+}
+
+}  // namespace probe::search

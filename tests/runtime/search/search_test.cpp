@@ -1,0 +1,166 @@
+// Searches for spots that are known, whole: text, space, points, expert, episodes, findings.
+#include "runtime/search/search.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "runtime/base/paths.h"
+#include "runtime/store/results.h"
+#include "tests/compiler/space/space_text.h"
+#include "tests/runtime/run/temporary_folder.h"
+
+namespace probe::search {
+namespace {
+
+struct Search {
+  std::unique_ptr<space::SpaceText> text;
+  SearchOptions options;
+  std::string said;
+
+  // `body`: the space of carrot_on_plate.
+  Search(Method method, const std::string& body, const std::string& policy)
+      : text(space::space_text("space around of carrot_on_plate {\n" + body + "\n}\n")) {
+    options.method = method;
+    options.text = {text->file, "", VLAPROBE_SOURCE_DIR "/assets", VLAPROBE_SOURCE_DIR "/dsl"};
+    options.run.policy = policy;
+    options.run.out = text->folder / "search";
+    options.run.jobs = 2;
+    options.levels = 11;
+    options.error = 0.1;
+  }
+
+  SearchSummary find() {
+    auto found = search(options, said);
+    INFO(said);
+    REQUIRE_MESSAGE(found.ok(), to_text(found.failure()));
+    return std::move(found).value();
+  }
+  Failure refused() {
+    const auto found = search(options, said);
+    REQUIRE_FALSE(found.ok());
+    return found.failure();
+  }
+};
+
+TEST_CASE(
+    "a boundary is found where it is, the text of it compiles, and the same call runs nothing") {
+  Search search(Method::kBoundary, "light ambient 0.05 .. 0.6", "weak:ambient<0.17");
+  const SearchSummary found = search.find();
+  REQUIRE(found.lines.size() == 2);
+  CAPTURE(found.lines[0]);
+  const Json& down = found.findings.at("axes")[0];
+  CHECK(down.value("status", "") == "found");
+  // Levels of 0.025: 0.175 succeeds, 0.15 fails.
+  CHECK(down.at("tolerance").get<double>() > 0.14);
+  CHECK(down.at("tolerance").get<double>() < 0.185);
+  CHECK(found.findings.at("axes")[1].value("status", "") == "no fall");
+  CHECK(found.is_done);
+  const std::string kept = search.options.run.out + "/found.probe";
+  REQUIRE(is_file(kept));
+  const AnalyzedText text = space::analyzed(kept);
+  CHECK(text.compilation.diagnostics.items().empty());
+
+  const SearchSummary again = search.find();
+  CHECK(again.ran == 0);
+  CHECK(again.findings == found.findings);
+  const auto shown = read_search(search.options.run.out);
+  REQUIRE(shown.ok());
+  CHECK(shown->lines == found.lines);
+}
+
+TEST_CASE("a folder that was begun with another policy, text or seed is refused by name") {
+  Search search(Method::kBoundary, "light ambient 0.2 .. 0.4", "null");
+  const SearchSummary found = search.find();
+  // It never succeeds, and so there is nothing to fall from.
+  for (const Json& axis : found.findings.at("axes")) {
+    CHECK(axis.value("status", "") == "fails unchanged");
+    CHECK(axis.value("sentence", "").find("nothing to fall from: 0 of") != std::string::npos);
+  }
+  search.options.run.policy = "reach";
+  CHECK(search.refused().message.find("another policy (\"null\", now \"reach\")") !=
+        std::string::npos);
+  search.options.run.policy = "null";
+  search.options.seed = 1;
+  CHECK(search.refused().message.find("another seed (0, now 1)") != std::string::npos);
+  search.options.seed = 0;
+  std::ofstream(search.text->file, std::ios::app) << "# more\n";
+  CHECK(search.refused().message.find("another text_sha256") != std::string::npos);
+}
+
+TEST_CASE("a folder that is no search's is left alone, and so is one of another format") {
+  Search search(Method::kBoundary, "light ambient 0.2 .. 0.4", "null");
+  std::filesystem::create_directories(search.options.run.out);
+  std::ofstream(search.options.run.out + "/notes.txt") << "mine";
+  CHECK(search.refused().message.find("is no search's") != std::string::npos);
+  std::ofstream(search.options.run.out + "/search.json")
+      << R"({"format": "vlaprobe search", "version": 99})";
+  CHECK(search.refused().message.find("another version") != std::string::npos);
+  std::ofstream(search.options.run.out + "/search.json") << "[1, 2";
+  CHECK(search.refused().message.find("not what a search wrote") != std::string::npos);
+}
+
+TEST_CASE(
+    "points that the compiler refuses are left out with its reason, those before them searched") {
+  // Far from where it lies, the carrot is off the table or under the plate.
+  Search search(Method::kBoundary, "place source in disc 60cm", "expert");
+  search.options.levels = 7;
+  const SearchSummary found = search.find();
+  const Json& axis = found.findings.at("axes")[0];
+  CAPTURE(axis.dump(1));
+  CHECK(axis.at("last_fair").get<double>() < 60);
+  CHECK(axis.value("sentence", "").find("nothing beyond") != std::string::npos);
+  CHECK(axis.value("sentence", "").find("P05") != std::string::npos);
+}
+
+TEST_CASE("what a case needs to fail is found exactly, and each set that was tried is told") {
+  Search search(Method::kMinimal,
+                "light power 0.5 .. 2\nclutter 0 .. 3 from (nut, rabbit)\nwords templates of put",
+                "weak:clutter>=2+reworded");
+  search.options.at = "light.power 0.7, clutter 3, words put_the";
+  const SearchSummary found = search.find();
+  CAPTURE(found.findings.dump(1));
+  const Json& smallest = found.findings.at("smallest");
+  CHECK(smallest.size() == 2);
+  CHECK(smallest.contains("clutter"));
+  CHECK(smallest.contains("words"));
+  CHECK(found.findings.at("tried").size() >= 4);
+}
+
+TEST_CASE("a point that is asked for by hand is one of the space, or refused with what it has") {
+  Search search(Method::kMinimal, "light power 0.5 .. 2\nwords templates of put", "expert");
+  const auto says = [&](const char* at, const char* what) {
+    search.options.at = at;
+    const Failure failure = search.refused();
+    CAPTURE(failure.message);
+    CHECK(failure.message.find(what) != std::string::npos);
+  };
+  says("light.pover 1", "did you mean `light.power`");
+  says("light.power 9", "goes from x 0.5 to x 2");
+  says("light.power bright", "expected a number");
+  says("words shout", "is one of");
+  says("light.power 1", "changes nothing");
+  search.options.at = "";
+  CHECK(search.refused().message.find("--from DIR") != std::string::npos);
+}
+
+TEST_CASE("a text without a space, with several, or with mistakes is refused") {
+  Search search(Method::kBoundary, "light ambient 0.2 .. 0.4", "null");
+  search.options.text.space = "arund";
+  CHECK(search.refused().message.find("did you mean `around`") != std::string::npos);
+  search.options.text.space = "";
+  std::ofstream(search.text->file, std::ios::app)
+      << "space other of carrot_on_plate { light ambient 0.2 .. 0.4 }\n";
+  CHECK(search.refused().message.find("around, other") != std::string::npos);
+  std::ofstream(search.text->file, std::ios::app) << "space other of nobody { }\n";
+  CHECK(search.refused().message.find("has mistakes") != std::string::npos);
+  CHECK(search.said.find("nobody") != std::string::npos);
+  std::ofstream(search.text->file) << "use \"suite/intact.probe\"\n";
+  CHECK(search.refused().message.find("declares no space") != std::string::npos);
+  search.options.text.file = "suite.plan";
+  CHECK(search.refused().message.find("a plan is frozen") != std::string::npos);
+}
+
+}  // namespace
+}  // namespace probe::search
