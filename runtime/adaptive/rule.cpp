@@ -77,6 +77,12 @@ std::string to_text(const Rule& rule) {
                      rule.kind == Rule::Kind::kEachTask ? kOfEach : kOfAll);
 }
 
+std::string in_words(const std::string& until) {
+  const auto outcomes = until.rfind(kOutcomes);
+  // Its first character ends the name.
+  return outcomes == until.npos ? until : until.substr(0, outcomes + 1);
+}
+
 Result<Rule> rule_from_text(const std::string& text, const std::string& where) {
   if (text == store::kBySearch)
     return Failure{Fault::kUsage,

@@ -35,6 +35,8 @@ Result<Rule> parse_rule(const std::string& text);
 
 // RunIdentity::until: "width 10 % of each task", "decided against `expert` (outcomes 3f..)".
 std::string to_text(const Rule& rule);
+// For people: without the outcomes.
+std::string in_words(const std::string& until);
 // The same read again; fails (kStore, at `where`) on what no program of this version writes.
 Result<Rule> rule_from_text(const std::string& text, const std::string& where);
 

@@ -248,9 +248,9 @@ std::string decision_line(const Decision& decision, const std::string& against) 
 
 std::vector<std::string> to_lines(const Summary& summary, bool is_long) {
   std::vector<std::string> lines = {fmt::format(
-      "stops by {}: {} of {} episodes count; 95 % intervals are of the rate that all {} would "
+      "until {}: {} of {} episodes count; 95 % intervals are of the rate that all {} would "
       "have, and hold whenever the run stopped",
-      printable(summary.rule, kLongestName), groups(summary.counted), groups(summary.planned),
+      printable(in_words(summary.rule), kLongestName), groups(summary.counted), groups(summary.planned),
       groups(summary.planned))};
   if (summary.beyond > 0)
     lines.push_back(fmt::format("{} rows do not count yet: episodes before them in the order are "
@@ -274,7 +274,7 @@ std::vector<std::string> to_lines(const Summary& summary, bool is_long) {
 
 std::string why_not_fixed(const std::string& until) {
   return "how many episodes were run depended on how they ended (--until: " +
-         printable(until, kLongestName) +
+         printable(in_words(until), kLongestName) +
          "), which tests and intervals of a fixed number do not allow for";
 }
 

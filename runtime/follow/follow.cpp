@@ -10,6 +10,7 @@
 #include <ctime>
 #include <unordered_set>
 
+#include "runtime/adaptive/rule.h"
 #include "runtime/base/digit_groups.h"
 #include "runtime/base/hash_number.h"
 #include "runtime/base/paths.h"
@@ -230,8 +231,8 @@ std::vector<std::string> to_lines(const Seen& seen) {
   }
   std::vector<std::string> lines = {line};
   if (!seen.until.empty())
-    lines.push_back(fmt::format("  stops by {}; `vlaprobe results {}` has its rates",
-                                printable(seen.until, kLongestWhy),
+    lines.push_back(fmt::format("  until {}; `vlaprobe results {}` has its rates",
+                                printable(adaptive::in_words(seen.until), kLongestWhy),
                                 shell_word(printable(seen.dir, kLongestWhy))));
   for (const auto& [name, count] : seen.rates) {
     if (!seen.until.empty()) {

@@ -278,7 +278,9 @@ class FolderLoader {
     std::string name = printable(record.identity.policy, kLongestText);
     if (!record.identity.live.empty())
       name += " (" + printable(record.identity.live, kLongestText) + ")";
-    if (adaptive) name += std::string(kUntil) + to_text(adaptive->rule) + ")";
+    if (adaptive)
+      name += std::string(kUntil) +
+              printable(adaptive::in_words(to_text(adaptive->rule)), kLongestText) + ")";
     place_run(name, std::move(info), std::move(episodes), std::move(of_policy));
     return {};
   }
@@ -305,10 +307,10 @@ class FolderLoader {
     std::vector<Episode> left;
     for (std::size_t i = 0; i < episodes.size(); ++i)
       if (counted[place_of[i]]) left.push_back(std::move(episodes[i]));
-    note("note", fmt::format("`{}`: stops by {}: {} of {} episodes count; its rates have intervals "
+    note("note", fmt::format("`{}`, until {}: {} of {} episodes count; its rates have intervals "
                              "that hold whenever it stopped, of what all {} would have. Left out are "
                              "its differences, rankings and models: {}",
-                             dir, to_text(run.rule), left.size(), run.order.size(),
+                             dir, adaptive::in_words(to_text(run.rule)), left.size(), run.order.size(),
                              run.order.size(), adaptive::why_not_fixed(to_text(run.rule))));
     if (left.size() < episodes.size())
       note("warn", fmt::format("`{}`: {} rows do not count yet, since episodes before them in its "

@@ -23,6 +23,8 @@ TEST_CASE("a rule is read as it is written, and written as it is read") {
   const std::string text = to_text(decided);
   CHECK(text == "decided against `pi0 (outcomes of others)` (outcomes 0123456789abcdef)");
   CHECK(rule_from_text(text, "run")->against == decided.against);
+  CHECK(in_words(text) == "decided against `pi0 (outcomes of others)`");
+  CHECK(in_words("width 10 % of each task") == "width 10 % of each task");
   CHECK(rule_from_text(text, "run")->outcomes == decided.outcomes);
 }
 

@@ -68,7 +68,7 @@ TEST_CASE("of a run that stops by what it finds counts are told, and no interval
   const Json json = to_json(seen);
   CHECK(json.at("rates")[0].find("low") == nullptr);
   const std::vector<std::string> lines = to_lines(seen);
-  CHECK(lines[1].find("stops by width 20 % of all tasks; `vlaprobe results ") != std::string::npos);
+  CHECK(lines[1].find("until width 20 % of all tasks; `vlaprobe results ") != std::string::npos);
   for (const std::string& line : lines) CHECK(line.find("[") == std::string::npos);
 }
 

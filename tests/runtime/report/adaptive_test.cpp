@@ -172,6 +172,28 @@ TEST_CASE("two runs are compared start by start, at any time, in whichever order
   CHECK(compared(alike, 0, 1).words[0].find("not decided on these starts") != std::string::npos);
 }
 
+TEST_CASE("a decision takes a start with its seeds as one, and is called by whom it was against") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  const std::vector<int> seeds = {1, 2, 3};
+  // 8 starts, and one seed of a ninth, whose others are under way.
+  fake_run(folder / "a", plan, "pi0",
+           {.tasks = {kTasks[0]},
+            .seeds = seeds,
+            .until = "decided against `octo` (outcomes 0123456789abcdef)",
+            .order = order_of({kTasks[0]}, seeds),
+            .run = 25},
+           always(true));
+  fake_run(folder / "b", plan, "octo", {.tasks = {kTasks[0]}, .seeds = seeds}, always(false));
+  const Benchmark benchmark = must_load({folder / "a", folder / "b"});
+  CHECK(benchmark.policies[0].label == "pi0 (until decided against `octo`)");
+  const Comparison comparison = compared(benchmark, 0, 1);
+  CHECK(comparison.anytime[0].starts == 8);
+  CHECK(comparison.anytime[0].won == 8);
+  CHECK(comparison.anytime[0].first.n == 24);
+  CHECK(comparison.anytime[0].is_real());
+}
+
 TEST_CASE("what nobody knows of the other one counts against whatever is to be decided") {
   const plan::Plan plan = suite_plan();
   RunsFolder folder;
