@@ -407,7 +407,10 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   summary.out = options.out;
   store::write_chosen(options.out, summary.total);
   // A shard of nothing is a part of the run like any other, for whoever merges all of them.
-  if (is_empty) return summary;
+  if (is_empty) {
+    if (dropped) PROBE_TRY(store->forget_until());
+    return summary;
+  }
   if (!order.empty() && !store->record().identity.until.empty())
     PROBE_TRY(store->freeze_order(order));
   const std::vector<EpisodeJob> chosen = selection.jobs;
@@ -494,8 +497,9 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     summary.total += static_cast<int>(shared.jobs.size());
     ran = run_jobs(shared.jobs.size(), options.jobs, make_worker);
   }
-  // Where episodes under way were left, what came next depended on more than what is stored.
-  const bool left_some = options.until && options.stopped && options.stopped();
+  // Where episodes under way were left, by a stop or a failure, what came next depended on more than
+  // what is stored.
+  const bool left_some = options.until && !ran;
   summary.call.ended = !left_some;
   summary.call.episodes = summary.done;
   summary.call.queries = queries.figures();

@@ -9,6 +9,7 @@
 
 #include "runtime/adaptive/sampled.h"
 #include "runtime/policy/scripted.h"
+#include "runtime/run/policies.h"
 #include "runtime/run/run.h"
 #include "runtime/store/chosen.h"
 #include "runtime/store/merge.h"
@@ -97,10 +98,42 @@ TEST_CASE("each task stops where its rate is known, in one call, in several and 
   CHECK(keys_of(folder / "merged") == keys_of(folder / "run"));
   CHECK(read_order(folder / "merged")->size() == 48);
   CHECK(adaptive::read_adaptive(folder / "merged").value()->drawing == stats::Drawing::kInTurn);
+  // It goes on like a run that had no shards.
+  CHECK(must_run(plan, until(options_for(folder / "merged", "null"), "width 10%")).done == 0);
+  CHECK(must_run(plan, dropping(options_for(folder / "merged", "null"))).done == 10);
+  CHECK(read_run_record(folder / "merged")->identity.until.empty());
+  // A shard of nothing drops its rule like the others, and goes with them.
+  for (int shard = 1; shard <= 3; ++shard) {
+    RunOptions options = dropping(options_for(folder / std::to_string(shard), "null"));
+    options.shard = shard;
+    options.shards = 3;
+    must_run(plan, options);
+    CHECK(read_run_record(options.out)->identity.until.empty());
+  }
+  const auto all = merge({shards, folder / "all"});
+  REQUIRE_MESSAGE(all.ok(), to_text(all.failure()));
+  CHECK(keys_of(folder / "all").size() == 48);
   must_run(plan, options_for(folder / "whole", "null"));
   const auto mixed = merge({{folder / "run", folder / "whole"}, folder / "mixed"});
   REQUIRE_FALSE(mixed.ok());
   CHECK(mixed.failure().message.find("stops by `--until`") != std::string::npos);
+}
+
+TEST_CASE("a call of two worlds that fails left an episode, so tasks were chosen by more than is stored") {
+  TemporaryFolder folder;
+  const plan::Plan plan = two_tasks();
+  std::atomic<int> made = 0;
+  RunOptions options = until(options_for(folder / "run", "mine"), "width 10%");
+  options.jobs = 2;
+  options.own_policy = OwnPolicy{
+      {}, [&](const PolicyContext& context) -> Result<std::unique_ptr<policy::Policy>> {
+        // Asked once before the run, then by each world.
+        if (++made == 3) return Failure{Fault::kIo, "no room", "disk"};
+        const auto choice = choose_policy("null");
+        return make_policy(*choice, context);
+      }};
+  CHECK(refusal(plan, options).find("no room") != std::string::npos);
+  CHECK(adaptive::read_adaptive(folder / "run").value()->drawing == stats::Drawing::kAnyhow);
 }
 
 TEST_CASE("all tasks together stop in one order, which no shard has") {
