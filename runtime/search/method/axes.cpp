@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,15 @@ namespace {
 
 // Two axes whose counted points are tied to one another at this p are not tested as a pair.
 constexpr double kTied = 0.01;
+
+constexpr double kMostPermutations = 1e7;
+
+// Of each of `tests` tests. The smallest p value of n permutations is 1 / (n + 1), which Holm takes
+// `tests` times; tests that are null end long before (Besag and Clifford), so many cost little.
+int permutations_of(std::size_t tests, const AxesOptions& options) {
+  const double needed = std::ceil(2 * static_cast<double>(tests) / options.error);
+  return std::max(options.permutations, static_cast<int>(std::min(needed, kMostPermutations)));
+}
 
 // What was told, as the tests need it.
 class Analysis {
@@ -79,10 +89,11 @@ class Analysis {
 
   void test_axes(AxesFinding& found) const {
     const Parts outcome{.count = 2, .of = failed_, .sides = {{}}};
+    const int permutations = permutations_of(axis_count_, options_);
     std::vector<double> p;
     for (std::size_t a = 0; a < axis_count_; ++a) {
       const IndependenceTest test =
-          independence(parts_[a], outcome, all_, tied_to(a, a), options_.permutations,
+          independence(parts_[a], outcome, all_, tied_to(a, a), permutations,
                        Draws(options_.seed, "axis " + std::to_string(a)));
       AxisEffect effect;
       if (!parts_[a].sides.empty()) {
@@ -103,6 +114,8 @@ class Analysis {
   }
 
   void test_pairs(AxesFinding& found) const {
+    const std::size_t pairs = axis_count_ * (axis_count_ - 1) / 2;
+    const int permutations = permutations_of(pairs, options_);
     std::vector<double> p;
     for (std::size_t a = 0; a < axis_count_; ++a) {
       for (std::size_t b = a + 1; b < axis_count_; ++b) {
@@ -111,7 +124,7 @@ class Analysis {
         effect.b = b;
         effect.tested = !is_tied_[a][b];
         const IndependenceTest test = independence(parts_[a], parts_[b], successes_, tied_to(a, b),
-                                                   options_.permutations, draws("pair", a, b));
+                                                   permutations, draws("pair", a, b));
         if (!parts_[a].sides.empty() && !parts_[b].sides.empty()) tell_corner(test.best, effect);
         p.push_back(effect.tested ? test.p : 1);
         found.pairs.push_back(effect);
@@ -187,8 +200,9 @@ class Analysis {
 }  // namespace
 
 Axes::Axes(Space space, const AxesOptions& options) : space_(std::move(space)), options_(options) {
-  PROBE_CHECK(options.points >= 0 && options.round > 0 && options.permutations > 0,
-              "points are drawn, and asked in rounds");
+  PROBE_CHECK(
+      options.points >= 0 && options.round > 0 && options.permutations > 0 && options.error > 0,
+      "points are drawn, and asked in rounds");
   for (const Axis& axis : space_) {
     PROBE_CHECK(axis.kind == AxisKind::kContinuous || (axis.size >= 1 && axis.size <= 255),
                 "a count or a choice has 1 to 255 values");

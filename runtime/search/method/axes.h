@@ -24,7 +24,7 @@ struct AxesOptions {
   // That any axis is said to matter wrongly; the same of any pair. Below 5 %, so that the right
   // pair and no other is named in 95 % of searches.
   double error = 0.03;
-  int permutations = 2000;  // of a test, at most
+  int permutations = 2000;  // of a test, at most; of many axes or pairs as many as Holm needs
   int resamples = 400;      // of the intervals
 };
 

@@ -134,7 +134,7 @@ struct Boundary::State {
     const stats::Count own = successes[0];
     const int n = static_cast<int>(own.n);
     if (n < options.own_trials) {
-      const int size = room(options.budget);
+      const int size = room(options.budget - check_size());
       // The end beside the first of them: what it tells decides where to look.
       const std::vector<int> fair = fair_levels();
       if (fair.back() > 0 && end_asked < options.end_trials) {
@@ -153,7 +153,7 @@ struct Boundary::State {
                              exact_lower(own, kConfidence) < options.own_at_least;
     if (!is_doubtful) return false;
     if (n < 4 * options.own_trials) {
-      fill(0, room(options.budget));
+      fill(0, room(options.budget - check_size()));
       return !ask.empty();
     }
     if (own.rate() >= options.own_at_least) return false;
@@ -161,17 +161,18 @@ struct Boundary::State {
     return true;
   }
 
-  // Check trials spread over the fair levels; true while there are more.
+  // Check trials spread over the fair levels; true while there are more. A round that is not the
+  // first ends with the budget.
   bool checks_on() {
     const int size = check_size();
-    if (check_asked >= size) {
+    const int now = std::min(room(options.budget), size - check_asked);
+    if (now <= 0) {
       is_checking = false;
       ++checks;
       monotone = monotone_p(successes, options.seed);
       return false;
     }
     const std::vector<int> fair = fair_levels();
-    const int now = std::min({options.batch, size - check_asked});
     for (int i = 0; i < now; ++i, ++check_asked) {
       // Every third place in turn, so that each batch sees the whole axis.
       const int place = check_asked % 3 * ((size + 2) / 3) + check_asked / 3;
@@ -196,7 +197,7 @@ struct Boundary::State {
     if (now == BoundaryStatus::kNoFall && !is_spent && unfair < options.levels &&
         unfair - highest > std::max(error_in_levels(), 1.0)) {
       return fill((highest + unfair) / 2,
-                  room(std::min(options.budget, trials + options.end_trials)));
+                  room(std::min(options.budget - reserved, trials + options.end_trials)));
     }
     if (now != BoundaryStatus::kUndecided || is_spent) {
       const bool is_doubtful =

@@ -90,6 +90,8 @@ Confirmation Confirm::confirmation() const {
     result.rate = exact_upper(result.own, 1 - kOwnShare * error);
     error *= 1 - kOwnShare;
   }
+  // Holm's last step may take all that claims have, and bounds of the other cases theirs as well.
+  error /= 2;
   const double cases = static_cast<double>(tried_.size() - first);
   std::vector<double> p;
   for (std::size_t i = first; i < tried_.size(); ++i) {

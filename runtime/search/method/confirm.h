@@ -20,7 +20,8 @@ namespace probe::search {
 struct ConfirmOptions {
   int trials = 40;      // of each case
   int own_trials = 60;  // of the own point, unless a rate is stated
-  double error = 0.05;  // that any case is called confirmed, or its bound too high, wrongly
+  double error = 0.05;  // that any case is called confirmed, or its bound too high, wrongly: a half
+                        // of it for either
   // Cases must fail more often than this. Not stated: more often than the own point does, by an
   // exact upper bound of that from fresh trials, which has a fifth of the error.
   std::optional<double> rate = std::nullopt;

@@ -88,14 +88,18 @@ void Minimal::end(MinimalStatus status) {
 void Minimal::go_on() {
   ask_.clear();
   const AxisSet all = (AxisSet{1} << options_.axes) - 1;
-  if (finding_.set == 0) {
+  if (!is_cutting_) {
     const SetTried* whole = judged(all);
     if (whole == nullptr) return;
     if (whole->verdict != Verdict::kFails) return end(MinimalStatus::kNotReliable);
+    finding_.set = all;
     const SetTried* none = judged(0);
     if (none == nullptr) return;
-    if (none->verdict == Verdict::kFails) return end(MinimalStatus::kFailsAtOwnPoint);
-    finding_.set = all;
+    if (none->verdict == Verdict::kFails) {
+      finding_.set = 0;
+      return end(MinimalStatus::kFailsAtOwnPoint);
+    }
+    is_cutting_ = true;
   }
   while (std::popcount(finding_.set) > 1) {
     bool is_smaller = false;

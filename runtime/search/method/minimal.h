@@ -47,12 +47,13 @@ enum class MinimalStatus : std::uint8_t {
   kFound,            // fails, and with any one of its axes put back does not
   kFailsAtOwnPoint,  // fails with nothing changed
   kNotReliable,      // the case itself does not fail reliably
-  kBudgetSpent,      // `set` still fails, but may be smaller
+  kBudgetSpent,      // `set` still fails, but may be smaller; 0: it is not yet known whether the
+                     // case itself fails reliably
 };
 
 struct MinimalFinding {
   MinimalStatus status = MinimalStatus::kRunning;
-  AxisSet set = 0;  // the smallest that was seen to fail
+  AxisSet set = 0;  // the smallest that was judged to fail; 0 while none was
   // Of kFound: with some axis put back it was unclear or left out, not seen to pass, and so that
   // axis is needed only as far as one knows.
   AxisSet doubtful = 0;
@@ -85,8 +86,9 @@ class Minimal {
   MinimalFinding finding_;
   std::map<AxisSet, std::size_t> index_;  // into finding_.tried
   std::vector<AxisSet> ask_;
-  int granularity_ = 2;  // ddmin's n
-  bool open_ = false;    // the last of finding_.tried is being judged
+  int granularity_ = 2;      // ddmin's n
+  bool open_ = false;        // the last of finding_.tried is being judged
+  bool is_cutting_ = false;  // the case fails and the own point does not
 };
 
 }  // namespace probe::search

@@ -107,7 +107,7 @@ struct Worst::State {
   }
 
   Point draw(Draws& draws) const {
-    // The own point itself is no change: drawn again, in the end with some axis changed.
+    // The own point itself is no change: drawn again, in the end anywhere else.
     for (int tries = 0; tries < 20; ++tries) {
       Point point = own_point(space);
       for (std::size_t a = 0; a < space.size(); ++a) {
@@ -117,10 +117,7 @@ struct Worst::State {
       }
       if (distance(space, point) > 0) return point;
     }
-    Point point = own_point(space);
-    const std::size_t a = draws.below(static_cast<std::uint32_t>(space.size()));
-    if (can_change(a)) point[a] = draw_changed(a, draws);
-    return point;
+    return draw_anywhere(draws);
   }
 
   // Every second time an end of the axis: what breaks a policy often does so from somewhere on.
@@ -163,6 +160,7 @@ struct Worst::State {
     for (std::size_t a = 0; a < space.size(); ++a) {
       if (point[a] != space[a].own) changed.push_back(a);
     }
+    if (changed.empty()) return draw_anywhere(draws);
     const std::size_t a = changed[draws.below(static_cast<std::uint32_t>(changed.size()))];
     const double u = draws.uniform();
     const bool is_put_back = changed.size() > 1 && draws.uniform() < 0.5;

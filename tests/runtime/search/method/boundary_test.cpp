@@ -69,6 +69,26 @@ TEST_CASE("a budget that is too small is said, with one that would do") {
   CHECK(boundary_of({.levels = 41, .budget = 4}, slope).status == BoundaryStatus::kUndecided);
 }
 
+TEST_CASE("no budget is exceeded, whatever the own rate and wherever success falls or comes back") {
+  for (const int budget : {4, 8, 16, 17, 80, 100}) {
+    for (const double own : {0.3, 0.95}) {
+      for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        const BoundaryOptions options{.levels = 41, .seed = seed, .budget = budget};
+        CAPTURE(budget);
+        CAPTURE(own);
+        const auto falls = [=](int level) { return 1 - own * (1 - 0.8 * level / 40.0); };
+        const auto comes_back = [=](int level) {
+          return level / 8 % 2 == 1 ? 1 - own / 2 : 1 - own;
+        };
+        const auto ends = [=](int level) { return level > 24 ? -1.0 : 1 - own; };
+        CHECK(boundary_of(options, falls).trials <= budget);
+        CHECK(boundary_of(options, comes_back).trials <= budget);
+        CHECK(boundary_of(options, ends).trials <= budget);
+      }
+    }
+  }
+}
+
 TEST_CASE("an unfair end is left out and counted, and the last fair level is told") {
   const auto always =
       boundary_of({.levels = 41}, [](int level) { return level > 24 ? -1.0 : 0.0; });

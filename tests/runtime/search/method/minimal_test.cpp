@@ -92,6 +92,18 @@ TEST_CASE("a rate between the two ends in unclear sets, and a small budget in wh
   CHECK(poor.finding().trials <= 40);
 }
 
+TEST_CASE(
+    "a budget that ends before the case is known to fail names no set, one after it the case") {
+  const auto spent = [](int budget) {
+    Minimal method({.axes = 8, .budget = budget});
+    drive(method, cause(set_of({1, 4, 6})), 1);
+    CHECK(method.finding().status == MinimalStatus::kBudgetSpent);
+    return method.finding().set;
+  };
+  CHECK(spent(4) == 0);
+  CHECK(spent(8) == 255);  // before the own point is judged
+}
+
 TEST_CASE("a search for a minimal set that is told the same asks the same") {
   const auto failure = cause(set_of({1, 4}), 0.8, 0.2);
   Minimal a({.axes = 6}), b({.axes = 6});

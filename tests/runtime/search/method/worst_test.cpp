@@ -76,6 +76,24 @@ TEST_CASE("a policy that never fails has no candidates, and neither has a space 
   CHECK(Worst({}, {}).done());
 }
 
+// Most of these axes cannot change, and the one that can is often drawn at its own value.
+TEST_CASE("a search for the worst never asks the own point, where it fails, too") {
+  Space space(20, {AxisKind::kCount, 1, 0});
+  space[7] = {AxisKind::kCount, 3, 1};
+  int own = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Worst method(space, {.seed = seed, .spread_floor = 0.5});
+    drive(
+        method,
+        [&](const Point& p) {
+          own += distance(space, p) == 0 ? 1 : 0;
+          return 1.0;
+        },
+        seed);
+  }
+  CHECK(own == 0);
+}
+
 TEST_CASE("unfair points are left out and the search goes on elsewhere") {
   Worst method(kSpace, {.seed = 1});
   drive(
