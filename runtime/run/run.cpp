@@ -432,7 +432,8 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const bool is_there_all = adaptive_jobs ? adaptive_jobs->is_done() : selection.jobs.empty();
   const auto ended_well = [&]() -> Status {
     if (dropped) PROBE_TRY(drop_rule(*store, options.out, order, summary));
-    return sum_up(options.out, summary);
+    // Rates of what a caller chose are told by no rule of ours.
+    return options.next ? Status() : sum_up(options.out, summary);
   };
   if (is_there_all && (unproven.empty() || !actor.server)) {
     PROBE_TRY(ended_well());

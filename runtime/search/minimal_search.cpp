@@ -130,6 +130,7 @@ Status search_minimal(Hunt& hunt) {
     summary.lines.push_back(
         fmt::format("  {}: {} trials fail, {}", text, of_text(one.failures), word_of(one.verdict)));
     tried.push_back({{"changes", json_of(space, values_with(one.set))},
+                     {"text", text},
                      {"failures", json_of(one.failures)},
                      {"verdict", word_of(one.verdict)}});
   }

@@ -2,6 +2,8 @@
 // trials that took no part in finding it.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "runtime/search/hunt.h"
 #include "runtime/search/method/confirm.h"
 #include "runtime/search/method/worst.h"
@@ -52,7 +54,7 @@ Status search_worst(Hunt& hunt) {
       std::string line = fmt::format("case {}: {}: fails in {} fresh trials", i + 1, changes,
                                      of_text(one.failures));
       line += one.confirmed ? fmt::format(", in {:.0f} % or more of all (the task itself: {})",
-                                          100 * one.low, of_text(found.own))
+                                          std::floor(100 * one.low), of_text(found.own))
                             : ", which is not confirmed: the best of many is lucky";
       summary.lines.push_back(line);
       const space::Point point{hunt.point_name(values), values, hunt.draw_of(values), {}};

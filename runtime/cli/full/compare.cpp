@@ -8,6 +8,8 @@
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/report/agreement.h"
+#include "runtime/report/compare_searches.h"
+#include "runtime/report/search_page.h"
 
 namespace probe::cli {
 namespace {
@@ -39,21 +41,40 @@ int compare_rates(const CompareArguments& arguments) {
   return kFine;
 }
 
+int compare_two_searches(const CompareArguments& arguments) {
+  if (!arguments.metrics.empty() || !arguments.sets.empty())
+    return report(
+        Failure{Fault::kUsage, "--metrics and --sets are of runs; these are searches", ""});
+  const auto compared = report::compare_searches(arguments.dirs[0], arguments.dirs[1]);
+  if (!compared) return report(compared.failure());
+  if (arguments.json) {
+    put("{}\n", report::to_json(*compared).dump(1));
+  } else {
+    put("{}", report::to_text(*compared));
+  }
+  return kFine;
+}
+
 int compare_verb(const CompareArguments& arguments) {
   if (!arguments.with.empty()) {
     if (arguments.metrics.empty() && arguments.sets.empty()) return compare_rates(arguments);
-    return report(Failure{Fault::kUsage,
-                          "--with compares rates of success, of the sets that its rows name: give it "
-                          "without --metrics and --sets",
-                          ""});
+    return report(
+        Failure{Fault::kUsage,
+                "--with compares rates of success, of the sets that its rows name: give it "
+                "without --metrics and --sets",
+                ""});
   }
   if (arguments.dirs.size() != 2) {
-    return report(Failure{Fault::kUsage,
-                          fmt::format("two results folders are compared, {} given; any number of them "
-                                      "against real rates: --with TABLE.csv",
-                                      arguments.dirs.size()),
-                          ""});
+    return report(
+        Failure{Fault::kUsage,
+                fmt::format("two results folders are compared, {} given; any number of them "
+                            "against real rates: --with TABLE.csv",
+                            arguments.dirs.size()),
+                ""});
   }
+  const auto are_searches = report::are_searches(arguments.dirs);
+  if (!are_searches) return report(are_searches.failure());
+  if (*are_searches) return compare_two_searches(arguments);
   const auto compared = report::compare_folders(
       arguments.dirs[0], arguments.dirs[1], {.metrics = arguments.metrics, .sets = arguments.sets});
   if (!compared) return report(compared.failure());
@@ -75,7 +96,7 @@ void add_compare(Verb app, int& exit) {
   auto arguments = std::make_shared<CompareArguments>();
   Verb verb = app.add_subcommand("compare",
                                  "two runs, or two models' answers, on the same starts: which "
-                                 "differences are real, how large");
+                                 "differences are real, how large; or two searches of boundaries");
   verb.footer("example: vlaprobe compare runs/step_10000 runs/step_20000");
   verb.add_option("DIR", arguments->dirs, "two results folders; behind --with any number");
   verb.add_option("--metrics", arguments->metrics, "A,B,...: of these only").delimiter(',');

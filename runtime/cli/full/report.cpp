@@ -11,6 +11,7 @@
 #include "runtime/cli/full/verbs.h"
 #include "runtime/report/page_data.h"
 #include "runtime/report/report_page.h"
+#include "runtime/report/search_page.h"
 #include "runtime/report/table_text.h"
 
 namespace probe::cli {
@@ -21,13 +22,54 @@ struct ReportArguments {
   std::string out, title, floors, format;
   bool json = false, no_traces = false;
   int jobs = 0;
+  std::vector<std::string> assets;
   std::string command;  // as it was called
 };
+
+// What is of runs alone, and was given with searches.
+Status check_search_options(const ReportArguments& arguments) {
+  const std::pair<bool, const char*> of_runs[] = {{!arguments.published.empty(), "--with"},
+                                                  {!arguments.floors.empty(), "--floors"},
+                                                  {!arguments.sets.empty(), "--sets"},
+                                                  {!arguments.format.empty(), "--format"}};
+  for (const auto& [is_given, flag] : of_runs) {
+    if (is_given)
+      return Failure{
+          Fault::kUsage,
+          std::string(flag) + " is of runs; `" + arguments.dirs.front() + "` is a search's folder",
+          ""};
+  }
+  return {};
+}
+
+Status write_search_report(const ReportArguments& arguments) {
+  PROBE_TRY(check_search_options(arguments));
+  PROBE_ASSIGN(const auto searches, report::load_searches(arguments.dirs));
+  const report::SearchPageOptions options{.title = arguments.title,
+                                          .command = arguments.command,
+                                          .program = std::string("vlaprobe ") + version(),
+                                          .assets = AssetRoot::chosen(arguments.assets)};
+  if (arguments.json) {
+    put("{}\n", report::search_page_json(searches, options).dump(1));
+    if (arguments.out.empty()) return {};
+  }
+  const report::SearchPage page = report::search_page(searches, options);
+  PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page.html))));
+  for (const std::string& note : page.notes) say("note: {}\n", note);
+  int trials = 0;
+  for (const report::SearchFindings& one : searches) trials += one.trials;
+  say("{}: {} {}, {} trials, {:.1f} MB\n", arguments.out, searches.size(),
+      searches.size() == 1 ? "search" : "searches", trials,
+      static_cast<double>(page.html.size()) / 1e6);
+  return {};
+}
 
 Status write_report(const ReportArguments& arguments) {
   std::vector<std::string> inputs = arguments.published;
   inputs.push_back(arguments.floors);
   PROBE_TRY(assets::check_output(arguments.out, inputs));
+  PROBE_ASSIGN(const bool are_searches, report::are_searches(arguments.dirs));
+  if (are_searches) return write_search_report(arguments);
   const report::ReportRequest request{.dirs = arguments.dirs,
                                       .sets = arguments.sets,
                                       .published = arguments.published,
@@ -80,12 +122,12 @@ int report_verb(ReportArguments& arguments) {
 
 void add_report(Verb app, int& exit) {
   auto arguments = std::make_shared<ReportArguments>();
-  Verb verb = app.add_subcommand("report",
-                                 "one page of runs: tables with intervals, charts, every episode");
+  Verb verb = app.add_subcommand(
+      "report", "one page of runs: tables with intervals, charts, every episode; or of searches");
   verb.footer(
       "the page opens from disk, offline; videos are linked, so keep them where they are\n"
       "example: vlaprobe report runs/expert runs/null runs/pi0 -o page.html");
-  verb.add_option("DIR", arguments->dirs, "results folders").required();
+  verb.add_option("DIR", arguments->dirs, "results folders, or folders of searches").required();
   verb.add_option("-o,--out", arguments->out, "the page");
   verb.add_option("--title", arguments->title, "of the page");
   verb.add_option("--with", arguments->published,
@@ -108,6 +150,9 @@ void add_report(Verb app, int& exit) {
   verb.add_flag("--no-traces", arguments->no_traces, "no timelines and no explained verdicts");
   verb.add_option("--jobs", arguments->jobs, "threads that read traces (default: all cores)")
       .between(1, 1024);
+  verb.add_option("--assets", arguments->assets,
+                  "asset folder of a search's pictures, and again for the next")
+      .no_extra_values();
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] { exit = report_verb(*arguments); });
 }

@@ -1,5 +1,5 @@
 // Bundles the page: node build.mjs OUT. Writes OUT/page_template.cpp, the page in pieces for the program, and OUT/before.html
-// and OUT/after.html, the same for tests; results go between the two.
+// and OUT/after.html, the same for tests; results go between the two. The style stands apart, for pages without a script.
 import { createHash } from "node:crypto";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -39,7 +39,8 @@ async function bundle(entry) {
 // Inside <script> and <style> only their own end tags and "<!--" mean anything.
 const script = (await bundle("main.ts")).replaceAll("</", "<\\/").replaceAll("<!--", "<\\!--");
 const style = await bundle("page.css");
-if (/<\/style/i.test(style)) throw new Error("the style sheet contains its own end tag");
+const searches = await bundle("searches.css");
+for (const sheet of [style, searches]) if (/<\/style/i.test(sheet)) throw new Error("the style sheet contains its own end tag");
 
 // Only this script runs, whatever the results contain; nothing is fetched but videos.
 const hash = createHash("sha256").update(script).digest("base64");
@@ -58,7 +59,7 @@ const notice = [
   `Contains Apache ECharts ${require("echarts/package.json").version} (Apache-2.0), zrender (BSD-3-Clause), tslib (0BSD)`,
   "and the typeface Inter (SIL Open Font License 1.1).",
 ].join(" ");
-const before = `<!doctype html>
+const head = `<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
@@ -68,12 +69,14 @@ const before = `<!doctype html>
 <meta name="color-scheme" content="light dark">
 <title>vlaprobe report</title>
 <!-- ${notice} -->
-<style>${style}</style>
+<style>`;
+const body = `</style>
 </head>
 <body>
 <div id="page"><p class="opening">Opening the report ...</p></div>
 <noscript><p class="opening">This page draws its tables and charts with its own script; allow scripts to see them.</p></noscript>
 `;
+const before = head + style + body;
 const after = `<script>${script}</script>
 </body>
 </html>
@@ -82,13 +85,14 @@ const after = `<script>${script}</script>
 writeLicences(inputs, join(out, "node_modules"), out);
 
 // Raw literals in pieces that every compiler takes.
+const size = 12000;
+const count = (text) => Math.ceil(text.length / size);
 function pieces(text) {
-  const size = 12000;
   const literals = [];
   for (let i = 0; i < text.length; i += size) literals.push(`    R"~page~(${text.slice(i, i + size)})~page~"sv,`);
   return literals.join("\n");
 }
-for (const text of [before, after]) {
+for (const text of [before, after, searches]) {
   if (!/^[\x09\x0a\x20-\x7e]*$/.test(text)) throw new Error("the page's own text is not plain ASCII");
   if (text.includes(")~page~")) throw new Error("the page's own text ends its literal");
 }
@@ -103,13 +107,20 @@ namespace probe::report {
 namespace {
 using namespace std::literals;
 constexpr std::string_view kBefore[] = {
-${pieces(before)}
+${pieces(head)}
+${pieces(style)}
+${pieces(body)}
+};
+constexpr std::string_view kSearches[] = {
+${pieces(searches)}
 };
 constexpr std::string_view kAfter[] = {
 ${pieces(after)}
 };
 }  // namespace
 std::span<const std::string_view> page_before() { return kBefore; }
+std::span<const std::string_view> page_style() { return std::span(kBefore).subspan(${count(head)}, ${count(style)}); }
+std::span<const std::string_view> searches_style() { return kSearches; }
 std::span<const std::string_view> page_after() { return kAfter; }
 }  // namespace probe::report
 `,

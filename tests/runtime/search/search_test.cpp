@@ -32,13 +32,13 @@ struct Search {
   }
 
   SearchSummary find() {
-    auto found = search(options, said);
+    auto found = search::search(options, said);
     INFO(said);
     REQUIRE_MESSAGE(found.ok(), to_text(found.failure()));
     return std::move(found).value();
   }
   Failure refused() {
-    const auto found = search(options, said);
+    const auto found = search::search(options, said);
     REQUIRE_FALSE(found.ok());
     return found.failure();
   }
