@@ -235,6 +235,7 @@ std::span<const int> Boundary::ask() const { return state_->ask; }
 void Boundary::tell(std::span<const Outcome> outcomes) {
   State& s = *state_;
   PROBE_CHECK(outcomes.size() == s.ask.size(), "every trial that was asked has its outcome");
+  std::vector<ToleranceGrid::Trial> trials;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const auto level = static_cast<std::size_t>(s.ask[i]);
     if (outcomes[i] == Outcome::kLeftOut) {
@@ -246,9 +247,9 @@ void Boundary::tell(std::span<const Outcome> outcomes) {
     ++s.successes[level].n;
     s.successes[level].k += succeeded ? 1 : 0;
     ++s.trials;
-    s.grid.update(s.ask[i], succeeded);
+    trials.push_back({s.ask[i], succeeded});
   }
-  s.grid.normalise();
+  s.grid.update(trials);
   s.go_on();
 }
 

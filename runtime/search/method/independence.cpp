@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace probe::search {
 namespace {
@@ -20,7 +22,7 @@ class Together {
   // `of_a` and `of_b`: the part of each trial.
   Together(const Parts& a, const Parts& b, const std::vector<std::uint8_t>& of_a,
            const std::vector<std::uint8_t>& of_b)
-      : a_(a), b_(b), table_(static_cast<std::size_t>(a.count * b.count)) {
+      : a_(a), b_(b), table_(static_cast<std::size_t>(a.count * b.count)), other_(table_) {
     const std::vector<double> n_a = further(a, of_a), n_b = further(b, of_b);
     const double n = static_cast<double>(of_a.size());
     for (const double in_a : n_a) {
@@ -35,7 +37,14 @@ class Together {
   BestCuts best(const std::vector<std::uint8_t>& of_a, const std::vector<std::uint8_t>& of_b) {
     std::fill(table_.begin(), table_.end(), 0);
     const auto width = static_cast<std::size_t>(b_.count);
-    for (std::size_t i = 0; i < of_a.size(); ++i) ++table_[of_a[i] * width + of_b[i]];
+    // Counted in two tables in turn, which do not wait for one another.
+    std::fill(other_.begin(), other_.end(), 0);
+    for (std::size_t i = 0; i + 1 < of_a.size(); i += 2) {
+      ++table_[of_a[i] * width + of_b[i]];
+      ++other_[of_a[i + 1] * width + of_b[i + 1]];
+    }
+    if (of_a.size() % 2 == 1) ++table_[of_a.back() * width + of_b.back()];
+    for (std::size_t i = 0; i < table_.size(); ++i) table_[i] += other_[i];
     // Cells become sums over all parts from one on, where that is how the axis is cut.
     const auto height = static_cast<std::size_t>(a_.count);
     if (a_.is_ordered) {
@@ -75,9 +84,43 @@ class Together {
 
   const Parts& a_;
   const Parts& b_;
-  std::vector<int> table_;
+  std::vector<int> table_, other_;
   std::vector<double> expected_, scale_;  // cut of a x cut of b
 };
+
+// Trials that are permuted among one another: the parts of one axis, between the trials of all
+// others. The `fixed` first trials are one part of the other axis, so that their order is no
+// matter.
+struct Run {
+  std::size_t first = 0, size = 0, fixed = 0;
+  bool is_a = false;  // whose parts move
+};
+
+// The most common part, and how often.
+std::pair<std::uint8_t, std::size_t> most_common(const Parts& parts,
+                                                 std::span<const std::size_t> trials) {
+  std::vector<std::size_t> n(static_cast<std::size_t>(parts.count));
+  for (const std::size_t i : trials) ++n[parts.of[i]];
+  const auto most = std::max_element(n.begin(), n.end());
+  return {static_cast<std::uint8_t>(most - n.begin()), *most};
+}
+
+Run run_of(const Parts& a, const Parts& b, std::span<std::size_t> trials,
+           std::vector<std::uint8_t>& of_a, std::vector<std::uint8_t>& of_b) {
+  const auto [part_a, n_a] = most_common(a, trials);
+  const auto [part_b, n_b] = most_common(b, trials);
+  const bool is_a = n_b >= n_a;
+  const Parts& still = is_a ? b : a;
+  const std::uint8_t part = is_a ? part_b : part_a;
+  std::stable_partition(trials.begin(), trials.end(),
+                        [&](std::size_t i) { return still.of[i] == part; });
+  const Run run{of_a.size(), trials.size(), std::max(n_a, n_b), is_a};
+  for (const std::size_t i : trials) {
+    of_a.push_back(a.of[i]);
+    of_b.push_back(b.of[i]);
+  }
+  return run;
+}
 
 }  // namespace
 
@@ -90,25 +133,24 @@ IndependenceTest independence(const Parts& a, const Parts& b, std::vector<std::s
     }
     return false;
   };
-  std::vector<std::size_t> ends;  // of each run of trials with the same parts
-  if (!within.empty()) std::stable_sort(among.begin(), among.end(), is_before);
   std::vector<std::uint8_t> of_a, of_b;
-  for (std::size_t i = 0; i < among.size(); ++i) {
-    of_a.push_back(a.of[among[i]]);
-    of_b.push_back(b.of[among[i]]);
-    if (i + 1 == among.size() || is_before(among[i], among[i + 1])) ends.push_back(i + 1);
+  std::vector<Run> runs;
+  if (!within.empty()) std::stable_sort(among.begin(), among.end(), is_before);
+  for (std::size_t first = 0, i = 0; i < among.size(); ++i) {
+    if (i + 1 < among.size() && !is_before(among[i], among[i + 1])) continue;
+    runs.push_back(run_of(a, b, std::span(among).subspan(first, i + 1 - first), of_a, of_b));
+    first = i + 1;
   }
   Together together(a, b, of_a, of_b);
   IndependenceTest test{.p = 1, .best = together.best(of_a, of_b)};
   if (test.best.square == 0) return test;
   int exceedances = 0;
   for (int done = 1; done <= permutations; ++done) {
-    std::size_t first = 0;
-    for (const std::size_t end : ends) {
-      for (std::size_t i = end - first; i > 1; --i) {
-        std::swap(of_b[first + i - 1], of_b[first + draws.below(static_cast<std::uint32_t>(i))]);
+    for (const Run& run : runs) {
+      std::uint8_t* permuted = (run.is_a ? of_a : of_b).data() + run.first;
+      for (std::size_t i = run.size; i > run.fixed; --i) {
+        std::swap(permuted[i - 1], permuted[draws.below(static_cast<std::uint32_t>(i))]);
       }
-      first = end;
     }
     exceedances += together.best(of_a, of_b).square >= test.best.square * (1 - 1e-9) ? 1 : 0;
     if (exceedances == kEnough) {

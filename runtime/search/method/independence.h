@@ -23,7 +23,7 @@ struct IndependenceTest {
 };
 
 // The largest chi-square over all pairs of cuts with five trials or more on each side, against its
-// values where b is permuted among trials that have the same parts of all of `within`: sequential
+// values where one is permuted among trials that have the same parts of all of `within`: sequential
 // Monte Carlo (Besag and Clifford 1991, Biometrika 78:301), ten exceedances or `permutations`.
 IndependenceTest independence(const Parts& a, const Parts& b, std::vector<std::size_t> among,
                               const std::vector<const Parts*>& within, int permutations,

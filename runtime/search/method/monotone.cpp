@@ -33,7 +33,9 @@ class Entropies {
   std::vector<double> values_;
 };
 
-double largest_rise(const std::vector<Tried>& tried, const Entropies& likelihood) {
+// Or some rise of `enough` or more.
+double largest_rise(const std::vector<Tried>& tried, const Entropies& likelihood,
+                    double enough = 1e300) {
   double largest = 0;
   for (std::size_t middle = 1; middle < tried.size(); ++middle) {
     std::size_t k1 = 0, n1 = 0;
@@ -48,6 +50,7 @@ double largest_rise(const std::vector<Tried>& tried, const Entropies& likelihood
         if (k2 * n1 <= k1 * n2) continue;
         const double ratio = before + likelihood(k2, n2) - likelihood(k1 + k2, n1 + n2);
         largest = std::max(largest, ratio);
+        if (largest >= enough) return largest;
       }
     }
   }
@@ -102,7 +105,8 @@ double monotone_p(std::span<const stats::Count> successes, std::uint64_t seed) {
         drawn[i].k += draws.uniform() < rates[i] ? 1U : 0U;
       }
     }
-    exceedances += largest_rise(drawn, likelihood) >= seen * (1 - 1e-9) ? 1 : 0;
+    const double enough = seen * (1 - 1e-9);
+    exceedances += largest_rise(drawn, likelihood, enough) >= enough ? 1 : 0;
     if (exceedances == kEnoughExceedances) return exceedances / static_cast<double>(draw);
   }
   return (exceedances + 1) / (kMostDraws + 1.0);

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <utility>
 
 #include "runtime/base/check.h"
 
@@ -27,17 +31,6 @@ constexpr std::size_t kCurves = ToleranceGrid::kInside * kSlopes.size() * kFloor
 // Bins that a batch is chosen with, each about as probable; a few more where the curves change.
 constexpr std::size_t kBins = 48;
 
-// Success at `x` over success at 0: floor + (1 - floor) G, G a logistic curve over its own value at
-// 0 that is `at` at `place`. With E = exp(place / slope),
-//   G(x) = at (E - 1) / (at E - 1 + (1 - at) exp(x / slope)),
-// here divided by E so that steps do not overflow.
-double curve(double x, double place, double slope, double floor, double at) {
-  const double shrunk = std::exp(-place / slope);
-  const double rise = std::exp(std::min((x - place) / slope, 700.0));
-  const double g = at * (1 - shrunk) / (at - shrunk + (1 - at) * rise);
-  return floor + (1 - floor) * g;
-}
-
 // A group of less is not thought of when a batch is chosen; a weight of less is 0 from then on.
 constexpr double kNegligible = 1e-7, kGone = 1e-20;
 
@@ -53,15 +46,70 @@ double minus_x_log_x(double x) { return x > 0 ? -x * std::log(x) : 0; }
 // Gains that differ by less than the arithmetic of two machines do not decide.
 double coarse(double gain) { return std::round(gain * 1e9); }
 
+// How the trials of a batch may come out together. Those of one level are told by how many of them
+// succeed, not by which.
+class WaysOut {
+ public:
+  explicit WaysOut(const std::vector<double>& bins) { joint_[0] = bins; }
+
+  // Of each way the probability of each bin and of that way.
+  const std::map<std::uint64_t, std::vector<double>>& joint() const { return joint_; }
+
+  // One more trial, at `level`, whose chance to succeed in a bin is success[bin].
+  void add(int level, const std::vector<double>& success) {
+    const auto at = std::find(levels_.begin(), levels_.end(), level);
+    const auto place = static_cast<std::size_t>(at - levels_.begin());
+    if (at == levels_.end()) levels_.push_back(level);
+    PROBE_CHECK(place < 8, "a batch has 8 trials at most");
+    std::map<std::uint64_t, std::vector<double>> split;
+    for (const auto& [successes, joint] : joint_) {
+      std::vector<double>& fails = split[successes];
+      std::vector<double>& succeeds = split[successes + (std::uint64_t{1} << (8 * place))];
+      fails.resize(joint.size());
+      succeeds.resize(joint.size());
+      for (std::size_t b = 0; b < joint.size(); ++b) {
+        fails[b] += joint[b] * (1 - success[b]);
+        succeeds[b] += joint[b] * success[b];
+      }
+    }
+    joint_ = std::move(split);
+  }
+
+ private:
+  std::vector<int> levels_;  // that are chosen
+  // By the successes at each of levels_, a byte for each.
+  std::map<std::uint64_t, std::vector<double>> joint_;
+};
+
 }  // namespace
 
-void ToleranceGrid::add_curve(std::size_t group, double tolerance, double slope, double floor,
-                              double prior) {
+// The exponentials of curves that have a place and a slope in common.
+struct ToleranceGrid::Fall {
+  Fall(int levels, double place, double slope) : shrunk(std::exp(-place / slope)) {
+    const double axis = levels - 1;
+    for (int level = 0; level < levels; ++level) {
+      rise.push_back(std::exp(std::min((level / axis - place) / slope, 700.0)));
+    }
+  }
+
+  // Success at a level over success at 0: floor + (1 - floor) G, G a logistic curve over its own
+  // value at 0 that is `at` at the place. With E = exp(place / slope),
+  //   G(x) = at (E - 1) / (at E - 1 + (1 - at) exp(x / slope)),
+  // here divided by E so that steps do not overflow.
+  double success(int level, double floor, double at) const {
+    const double up = rise[static_cast<std::size_t>(level)];
+    return floor + (1 - floor) * (at * (1 - shrunk) / (at - shrunk + (1 - at) * up));
+  }
+
+  double shrunk = 0;
+  std::vector<double> rise;  // a level
+};
+
+void ToleranceGrid::add_curve(std::size_t group, const Fall& fall, double floor, double prior) {
   // A floor of half and more is told by where half of its own fall is.
   const double at = floor < 0.5 ? (0.5 - floor) / (1 - floor) : 0.5;
-  const double axis = levels_ - 1;
   for (int level = 0; level < levels_; ++level) {
-    const double success = floor >= 1 ? 1 : curve(level / axis, tolerance, slope, floor, at);
+    const double success = floor >= 1 ? 1 : fall.success(level, floor, at);
     curve_[static_cast<std::size_t>(level) * kCurves + curve_count()] = static_cast<float>(success);
   }
   while (first_of_.size() <= group) first_of_.push_back(curve_count());
@@ -78,17 +126,19 @@ ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
   for (std::size_t cell = 0; cell < kInside; ++cell) {
     const double tolerance = (static_cast<double>(cell) + 0.5) / static_cast<double>(kInside);
     for (const double slope : kSlopes) {
+      const Fall fall(levels, tolerance, slope);
       for (const Weighed& floor : kFloors) {
-        add_curve(cell, tolerance, slope, floor.value, inside * floor.prior / slopes);
+        add_curve(cell, fall, floor.value, inside * floor.prior / slopes);
       }
     }
   }
-  add_curve(kInside, 1, 1, 1, kFlat);
+  add_curve(kInside, Fall(levels, 1, 1), 1, kFlat);
   for (std::size_t place = 0; place < kHigherPlaces; ++place) {
     const double x = (static_cast<double>(place) + 0.5) / kHigherPlaces;
     for (const double slope : kSlopes) {
+      const Fall fall(levels, x, slope);
       for (const double floor : kHigherFloors) {
-        add_curve(kInside, x, slope, floor,
+        add_curve(kInside, fall, floor,
                   kHigherFloor / (kHigherPlaces * slopes * kHigherFloors.size()));
       }
     }
@@ -96,7 +146,7 @@ ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
   for (std::size_t place = 0; place < kBeyondPlaces; ++place) {
     const double x = 1 + (static_cast<double>(place) + 0.5) / (2 * kBeyondPlaces);
     for (const double slope : kSlopes) {
-      add_curve(kInside, x, slope, 0, kBeyondEnd / (kBeyondPlaces * slopes));
+      add_curve(kInside, Fall(levels, x, slope), 0, kBeyondEnd / (kBeyondPlaces * slopes));
     }
   }
   first_of_.push_back(curve_count());
@@ -105,39 +155,48 @@ ToleranceGrid::ToleranceGrid(int levels) : levels_(levels) {
   normalise();
 }
 
-void ToleranceGrid::update(int level, bool succeeded) {
-  const float* at = curve_.data() + static_cast<std::size_t>(level) * kCurves;
+void ToleranceGrid::update(std::span<const Trial> trials) {
   for (std::size_t group = 0; group < kGroups; ++group) {
     if (groups_[group] == 0) continue;
     for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c) {
-      const double g = at[c];
       double* weight = weight_.data() + c * kRates.size();
-      if (succeeded) {
-        for (std::size_t k = 0; k < kRates.size(); ++k) weight[k] *= kRates[k] * g;
-      } else {
-        for (std::size_t k = 0; k < kRates.size(); ++k) weight[k] *= 1 - kRates[k] * g;
+      std::array<double, kRates.size()> after;
+      std::copy_n(weight, kRates.size(), after.begin());
+      for (const Trial& trial : trials) {
+        const double g = curve_[static_cast<std::size_t>(trial.level) * kCurves + c];
+        if (trial.succeeded) {
+          for (std::size_t k = 0; k < kRates.size(); ++k) after[k] *= kRates[k] * g;
+        } else {
+          for (std::size_t k = 0; k < kRates.size(); ++k) after[k] *= 1 - kRates[k] * g;
+        }
       }
+      std::copy_n(after.begin(), kRates.size(), weight);
     }
   }
+  normalise();
 }
 
 void ToleranceGrid::normalise() {
   double sum = 0;
   for (std::size_t group = 0; group < kGroups; ++group) {
     if (groups_[group] == 0) continue;
-    double in_group = 0;
-    for (const double weight : weights_of(group)) in_group += weight;
-    groups_[group] = in_group;
-    sum += in_group;
+    std::array<double, kRates.size()> of_rate{};  // sums that do not wait for one another
+    const std::span<const double> weights = weights_of(group);
+    for (std::size_t i = 0; i < weights.size(); i += kRates.size()) {
+      for (std::size_t k = 0; k < kRates.size(); ++k) of_rate[k] += weights[i + k];
+    }
+    groups_[group] = std::accumulate(of_rate.begin(), of_rate.end(), 0.0);
+    sum += groups_[group];
   }
   PROBE_CHECK(sum > 0, "some curve explains what was seen");
+  const double scale = 1 / sum;
   for (std::size_t group = 0; group < kGroups; ++group) {
     if (groups_[group] == 0) continue;
-    groups_[group] /= sum;
+    groups_[group] *= scale;
     if (groups_[group] < kGone) groups_[group] = 0;
     for (double& weight : weights_of(group)) {
-      weight /= sum;
-      if (weight < kGone) weight = 0;
+      const double scaled = weight * scale;
+      weight = scaled < kGone ? 0 : scaled;
     }
   }
 }
@@ -190,17 +249,36 @@ ToleranceGrid::Bins ToleranceGrid::bins(std::span<const int> levels) const {
         rate[c] += weight_[c * kRates.size() + k] * kRates[k];
       }
     }
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      const float* at = curve_.data() + static_cast<std::size_t>(levels[i]) * kCurves;
+    double* of_bin = bins.success.data() + bin_of[group] * levels.size();
+    const auto row = [&](std::size_t i) {
+      return curve_.data() + static_cast<std::size_t>(levels[i]) * kCurves;
+    };
+    // Four levels at a time, whose sums do not wait for one another.
+    std::size_t i = 0;
+    for (; i + 4 <= levels.size(); i += 4) {
+      const float *r0 = row(i), *r1 = row(i + 1), *r2 = row(i + 2), *r3 = row(i + 3);
+      double s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+      for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c) {
+        s0 += rate[c] * r0[c];
+        s1 += rate[c] * r1[c];
+        s2 += rate[c] * r2[c];
+        s3 += rate[c] * r3[c];
+      }
+      of_bin[i] += s0;
+      of_bin[i + 1] += s1;
+      of_bin[i + 2] += s2;
+      of_bin[i + 3] += s3;
+    }
+    for (; i < levels.size(); ++i) {
       double success = 0;
       for (std::size_t c = first_of_[group]; c < first_of_[group + 1]; ++c)
-        success += rate[c] * at[c];
-      bins.success[i * count + bin_of[group]] += success;
+        success += rate[c] * row(i)[c];
+      of_bin[i] += success;
     }
   }
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    for (std::size_t b = 0; b < count; ++b) {
-      double& success = bins.success[i * count + b];
+  for (std::size_t b = 0; b < count; ++b) {
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      double& success = bins.success[b * levels.size() + i];
       success = bins.weight[b] > 0 ? std::min(1.0, success / bins.weight[b]) : 0;
     }
   }
@@ -212,45 +290,38 @@ std::vector<int> ToleranceGrid::most_informative(std::span<const int> levels,
   const Bins all = bins(levels);
   const std::size_t bin_count = all.weight.size();
   std::vector<double> noise(levels.size());  // entropy of an outcome whose bin is known
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    for (std::size_t b = 0; b < bin_count; ++b) {
-      noise[i] += all.weight[b] * entropy(all.success[i * bin_count + b]);
+  for (std::size_t b = 0; b < bin_count; ++b) {
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      noise[i] += all.weight[b] * entropy(all.success[b * levels.size() + i]);
     }
   }
-  // joint[v][b]: the probability of bin b and of the v-th way the chosen trials may come out.
-  std::vector<double> joint = all.weight;
+  WaysOut ways(all.weight);
   std::vector<int> chosen;
+  std::vector<double> gain(levels.size()), yes(levels.size());
   while (chosen.size() < count) {
-    const std::size_t ways = joint.size() / bin_count;
+    for (std::size_t i = 0; i < levels.size(); ++i) gain[i] = -noise[i];
+    for (const auto& [successes, joint] : ways.joint()) {
+      double either = 0;
+      std::fill(yes.begin(), yes.end(), 0.0);
+      for (std::size_t b = 0; b < bin_count; ++b) {
+        const double p = joint[b];
+        const double* success = all.success.data() + b * levels.size();
+        for (std::size_t i = 0; i < levels.size(); ++i) yes[i] += p * success[i];
+        either += p;
+      }
+      const double of_either = minus_x_log_x(either);
+      for (std::size_t i = 0; i < levels.size(); ++i) {
+        gain[i] += minus_x_log_x(yes[i]) + minus_x_log_x(either - yes[i]) - of_either;
+      }
+    }
     std::size_t best = 0;
-    double best_gain = -1e300;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      const double* success = all.success.data() + i * bin_count;
-      double gain = -noise[i];
-      for (std::size_t v = 0; v < ways; ++v) {
-        double yes = 0, either = 0;
-        for (std::size_t b = 0; b < bin_count; ++b) {
-          yes += joint[v * bin_count + b] * success[b];
-          either += joint[v * bin_count + b];
-        }
-        gain += minus_x_log_x(yes) + minus_x_log_x(either - yes) - minus_x_log_x(either);
-      }
-      if (coarse(gain) > best_gain) {
-        best_gain = coarse(gain);
-        best = i;
-      }
+    for (std::size_t i = 1; i < levels.size(); ++i) {
+      if (coarse(gain[i]) > coarse(gain[best])) best = i;
     }
     chosen.push_back(levels[best]);
-    std::vector<double> split(2 * joint.size());
-    const double* success = all.success.data() + best * bin_count;
-    for (std::size_t v = 0; v < ways; ++v) {
-      for (std::size_t b = 0; b < bin_count; ++b) {
-        const double p = joint[v * bin_count + b];
-        split[2 * v * bin_count + b] = p * success[b];
-        split[(2 * v + 1) * bin_count + b] = p * (1 - success[b]);
-      }
-    }
-    joint = std::move(split);
+    std::vector<double> success(bin_count);
+    for (std::size_t b = 0; b < bin_count; ++b) success[b] = all.success[b * levels.size() + best];
+    ways.add(levels[best], success);
   }
   return chosen;
 }

@@ -18,9 +18,11 @@ class ToleranceGrid {
 
   explicit ToleranceGrid(int levels);
 
-  void update(int level, bool succeeded);
-  // After some updates, before anything is asked.
-  void normalise();
+  struct Trial {
+    int level = 0;
+    bool succeeded = false;
+  };
+  void update(std::span<const Trial> trials);
 
   // The posterior of each group; sums to 1.
   const std::array<double, kGroups>& groups() const { return groups_; }
@@ -37,11 +39,13 @@ class ToleranceGrid {
                                                     0.7, 0.8, 0.88, 0.94, 0.98, 0.999};
   struct Bins {
     std::vector<double> weight;   // a bin
-    std::vector<double> success;  // level x bin
+    std::vector<double> success;  // bin x level
   };
+  struct Fall;
   // One curve at every level, and its prior; curves of a group stand together.
-  void add_curve(std::size_t group, double tolerance, double slope, double floor, double prior);
+  void add_curve(std::size_t group, const Fall& fall, double floor, double prior);
   std::span<double> weights_of(std::size_t group);
+  void normalise();
   Bins bins(std::span<const int> levels) const;
 
   std::size_t curve_count() const { return curves_; }  // so far
