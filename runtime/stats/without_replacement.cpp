@@ -76,7 +76,23 @@ Evidence evidence_of(const Drawn& list, bool unknown_succeed) {
                          : Evidence(list.total, list.successes, list.failures + list.unknown);
 }
 
-// The largest, or smallest, sum of successes whose product of evidence is below the limit.
+// By how much more than some other way to fill in the unknown this one speaks against even its best
+// number. The evidence against that is no monotone function of the filling: bets on nearly certain
+// outcomes have paid worse at the edges.
+double slack_of(const Drawn& list, const Evidence& filled) {
+  const double own = filled.at(filled.best());
+  double least = own;
+  for (std::int64_t k = 0; k <= list.unknown; ++k) {
+    const Evidence other(list.total, list.successes + k, list.failures + list.unknown - k);
+    least = std::min(least, other.at(other.best()));
+  }
+  return own - least;
+}
+
+// The largest, or smallest, sum of successes whose product of evidence is below the limit, however
+// the unknown is filled in: with all of it as successes, or failures, the evidence against a number
+// beyond the best one is at most slack_of() above that of any other way, since their ratio falls (or
+// rises) in the number.
 std::int64_t farthest_sum(std::span<const Drawn> lists, double limit, bool up) {
   struct Step {
     double cost;
@@ -99,6 +115,7 @@ std::int64_t farthest_sum(std::span<const Drawn> lists, double limit, bool up) {
     evidence.push_back(evidence_of(lists[i], up));
     const std::int64_t best = evidence[i].best();
     spent += evidence[i].at(best);
+    if (lists[i].unknown > 0) limit += slack_of(lists[i], evidence[i]);
     sum += best;
     offer(i, best);
   }
@@ -141,6 +158,7 @@ Interval rate_of_lists(std::span<const Drawn> lists, Drawing drawing, double con
   std::int64_t total = 0;
   for (const Drawn& list : lists) total += list.total;
   if (total == 0) return {0, 1};
+  if (lists.size() == 1) return rate_of_drawn(lists[0], confidence);
   if (drawing == Drawing::kInTurn) {
     const double limit = -std::log(1 - confidence);
     return {share(farthest_sum(lists, limit, false), total),

@@ -213,6 +213,41 @@ TEST_CASE("episodes that end out of turn, the failures first, do not bias what i
   }
 }
 
+TEST_CASE("several tasks with many worlds: the rate of all is missed at most one time in twenty") {
+  constexpr int kTimes = 400, kTasks = 6, kStarts = 24, kWorkers = 8;
+  std::mt19937 bits(23);
+  int missed_each = 0, missed_all = 0;
+  for (int time = 0; time < kTimes; ++time) {
+    std::vector<std::vector<bool>> truths(kTasks, std::vector<bool>(kStarts));
+    double truth = 0;
+    for (auto& task : truths) {
+      const double rate = uniform(bits);
+      for (auto&& one : task) {
+        one = uniform(bits) < rate;
+        truth += one ? 1.0 / (kTasks * kStarts) : 0;
+      }
+    }
+    const auto misses = [&](const stats::Interval& interval) {
+      return interval.low > truth + 1e-12 || interval.high < truth - 1e-12 ? 1 : 0;
+    };
+    // The least sure task next, as far as is known while others are under way.
+    const auto each = run_in_time(width(30), truths, kWorkers, 1e9);
+    missed_each += misses(stats::rate_of_lists(each.tasks, stats::Drawing::kInTurn));
+    stats::Drawn together;
+    for (const stats::Drawn& one :
+         run_in_time(width(15, Rule::Kind::kAllTasks), truths, kWorkers, 1e9).tasks) {
+      together.total += one.total;
+      together.successes += one.successes;
+      together.failures += one.failures;
+    }
+    missed_all += misses(stats::rate_of_drawn(together));
+  }
+  MESSAGE("6 tasks, 8 worlds, rates from 0 to 1: the rate of all missed " << 100.0 * missed_each / kTimes
+          << " % in turn, " << 100.0 * missed_all / kTimes << " % in one order");
+  CHECK(missed_each <= 0.05 * kTimes);
+  CHECK(missed_all <= 0.05 * kTimes);
+}
+
 TEST_CASE("a decision between equal policies is false at most one time in twenty, and real ones are made") {
   constexpr int kTimes = 2000, kStarts = 288;
   std::mt19937 bits(5);

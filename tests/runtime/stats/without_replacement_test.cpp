@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <random>
 #include <vector>
@@ -190,6 +191,42 @@ TEST_CASE("several lists: in turn or anyhow, their common rate is missed at most
   for (const Drawing drawing : {Drawing::kInTurn, Drawing::kAnyhow}) {
     CHECK(rate_of_lists(known, drawing).low == doctest::Approx(84.0 / 96));
     CHECK(rate_of_lists(known, drawing).high == doctest::Approx(84.0 / 96));
+  }
+}
+
+TEST_CASE("what nobody knows of several lists makes the interval as wide as any way to fill it in") {
+  const auto check = [](const std::vector<Drawn>& lists) {
+    const Interval open = rate_of_lists(lists, Drawing::kInTurn);
+    std::vector<Drawn> filled = lists;
+    const std::function<void(std::size_t)> fill = [&](std::size_t i) {
+      if (i == lists.size()) {
+        const Interval one = rate_of_lists(filled, Drawing::kInTurn);
+        CHECK(open.low <= one.low + 1e-12);
+        CHECK(open.high >= one.high - 1e-12);
+        return;
+      }
+      for (std::int64_t k = 0; k <= lists[i].unknown; ++k) {
+        filled[i] = {lists[i].total, lists[i].successes + k,
+                     lists[i].failures + lists[i].unknown - k, 0};
+        fill(i + 1);
+      }
+    };
+    fill(0);
+  };
+  // Filled with successes alone, the second and the third leave the first less than with one failure.
+  check({{300, 0, 6, 0}, {12, 0, 1, 2}, {12, 9, 0, 1}});
+  std::mt19937 bits(19);
+  for (int time = 0; time < 300; ++time) {
+    std::vector<Drawn> lists;
+    for (auto left = 1 + bits() % 3; left > 0; --left) {
+      Drawn list{static_cast<std::int64_t>(6 + bits() % 60), 0, 0, static_cast<std::int64_t>(bits() % 4)};
+      const auto known = static_cast<std::int64_t>(bits() % 11) % (list.total - list.unknown + 1);
+      list.successes = bits() % 2 == 0 ? static_cast<std::int64_t>(bits()) % (known + 1)
+                                       : known * static_cast<std::int64_t>(bits() % 2);
+      list.failures = known - list.successes;
+      lists.push_back(list);
+    }
+    check(lists);
   }
 }
 
