@@ -325,12 +325,14 @@ bool differs_somewhere(const Comparison& comparison, int metric) {
 
 // Of runs of which one stops by what it finds.
 std::string anytime_verdict(const Benchmark& benchmark, const Comparison& comparison,
-                            const AnytimeRow& row) {
+                            const AnytimeRow& row, const std::string& other) {
   const Metric& metric = benchmark.metrics[static_cast<std::size_t>(row.metric)];
-  const std::string numbers = fmt::format(
+  std::string numbers = fmt::format(
       "{} against {}; of {} starts {} has more on {}, fewer on {}; anytime-valid {}",
       rate(row.first), rate(row.second), row.starts, comparison.a, row.won, row.lost,
       p_text(row.adjusted));
+  if (row.left_out > 0)
+    numbers += fmt::format("; {} starts that {} has not run are left out", row.left_out, other);
   if (!row.is_real())
     return fmt::format("{}: not decided on these starts ({}).", metric.name, numbers);
   const bool a_better = (row.leads > 0) == (metric.good >= 0);
@@ -398,8 +400,9 @@ Result<Comparison> compare(const Benchmark& benchmark, int a, int b,
   for (const Note& note : benchmark.notes) comparison.notes.push_back(note.text);
   if (is_adaptive) {
     PROBE_ASSIGN(comparison.anytime, compare_at_any_time(benchmark, a, b, metrics));
+    const std::string& other = benchmark.is_adaptive(a) ? comparison.b : comparison.a;
     for (const AnytimeRow& row : comparison.anytime)
-      comparison.words.push_back(anytime_verdict(benchmark, comparison, row));
+      comparison.words.push_back(anytime_verdict(benchmark, comparison, row, other));
     comparison.notes.push_back(
         "the starts were won or lost one by one, which may be looked at at any time; how large the "
         "difference is, categories, tasks, and what holds for starts never tried are left out");
@@ -464,6 +467,7 @@ Json to_json(const Benchmark& benchmark, const Comparison& comparison) {
          {"starts", row.starts},
          {"a_wins", row.won},
          {"b_wins", row.lost},
+         {"left_out", row.left_out},
          {"p", row.p},
          {"p_adjusted", row.adjusted},
          {"real", row.is_real()}});

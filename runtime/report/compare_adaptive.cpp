@@ -69,6 +69,7 @@ Result<std::vector<AnytimeRow>> compare_at_any_time(const Benchmark& benchmark, 
     AnytimeRow row{.metric = metric};
     adaptive::Decision decision;
     std::vector<std::pair<adaptive::Outcome, bool>> start;
+    bool has_ended = false;  // the other one, which stops by what it finds as well
     for (std::size_t place = 0; place < of.order.size();) {
       const AdaptivePolicy::Place& at = of.order[place];
       bool is_whole = true, is_shared = true;
@@ -93,9 +94,9 @@ Result<std::vector<AnytimeRow>> compare_at_any_time(const Benchmark& benchmark, 
       }
       place = end;
       // Behind a gap the next task's starts may count, where each stops by itself.
-      if (!is_whole || !is_shared) {
-        if (!is_shared && is_whole) ++row.left_out;
-        if (!is_shared && benchmark.is_adaptive(second)) break;
+      has_ended = has_ended || (!is_shared && benchmark.is_adaptive(second));
+      if (!is_whole || !is_shared || has_ended) {
+        if (is_whole) ++row.left_out;
         if (!is_whole && of.rule.kind != Rule::Kind::kEachTask) break;
         continue;
       }

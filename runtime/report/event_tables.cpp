@@ -118,7 +118,10 @@ Benchmark benchmark_of_events(const Benchmark& benchmark, const ToldEvents& even
     episode.truths = {};
     const auto& told = events.told[i];
     if (!told || !told->untold.empty()) {
-      if (episode.valid()) episode.reason = static_cast<int>(out.reasons.size()) - 1;
+      if (episode.valid()) {
+        episode.reason = static_cast<int>(out.reasons.size()) - 1;
+        episode.is_open = true;  // what happened in it may have been either
+      }
       continue;
     }
     for (const rejudge::EventCount& count : told->counts)

@@ -310,7 +310,8 @@ class FolderLoader {
     note("note", fmt::format("`{}`, until {}: {} of {} episodes count; its rates have intervals "
                              "that hold whenever it stopped, of what all {} would have. Left out are "
                              "its differences, rankings and models: {}",
-                             dir, adaptive::in_words(to_text(run.rule)), left.size(), run.order.size(),
+                             dir, printable(adaptive::in_words(to_text(run.rule)), kLongestText),
+                             left.size(), run.order.size(),
                              run.order.size(), adaptive::why_not_fixed(to_text(run.rule))));
     if (left.size() < episodes.size())
       note("warn", fmt::format("`{}`: {} rows do not count yet, since episodes before them in its "

@@ -166,6 +166,18 @@ TEST_CASE("two runs are compared start by start, at any time, in whichever order
   CHECK(to_text(benchmark, one).find("for starts never tried are left out") != std::string::npos);
   CHECK(compared(benchmark, 0, 1, {"success", "grasp"}).anytime.size() == 2);
 
+  CHECK(one.words[0].find("left out") == std::string::npos);
+
+  // Starts that only the run that stops has are no part of it, and said.
+  fake_run(folder / "d", plan, "half", {.tasks = kTasks, .last = 5}, always(false));
+  const Benchmark fewer = must_load({folder / "a", folder / "d"});
+  for (const bool mirrored : {false, true}) {
+    const Comparison with = compared(fewer, mirrored ? 1 : 0, mirrored ? 0 : 1);
+    CHECK(with.anytime[0].starts == 12);
+    CHECK(with.words[0].find("; 8 starts that half has not run are left out") != std::string::npos);
+    CHECK(to_json(fewer, with).at("at_any_time")[0].at("left_out").get<int>() == 8);
+  }
+
   // Alike: not decided.
   fake_run(folder / "c", plan, "rt1", {.tasks = kTasks}, always(true));
   const Benchmark alike = must_load({folder / "a", folder / "c"});

@@ -81,6 +81,28 @@ TEST_CASE("an episode of which nothing is told counts nowhere, and a task lacks 
   CHECK(!estimate(told, 0, told.find_metric("tipped"), {told.find_task(kBase)}));
 }
 
+TEST_CASE("of a run that stops by what it finds, an episode of which nothing is told may have been either") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  std::vector<store::OrderedEpisode> order;
+  for (int start = 0; start < 24; ++start) order.push_back({{kBase, start, 42}, {}});
+  fake_run(folder / "a", plan, "pi0",
+           {.tasks = {kBase}, .until = "width 10 % of each task", .order = order, .run = 24}, always(true));
+  const auto benchmark = load(std::vector<std::string>{folder / "a"});
+  REQUIRE(benchmark.ok());
+  ToldEvents events;
+  events.metrics.events = {"dropped"};
+  rejudge::EpisodeEvents told;
+  told.counts = {{"dropped", 0}};
+  events.told.assign(24, told);
+  events.told[3].reset();
+  const Benchmark made = benchmark_of_events(*benchmark, events);
+  const auto rate = estimate(made, 0, made.find_metric("dropped"), {made.find_task(kBase)});
+  REQUIRE(rate);
+  CHECK(rate->interval.low == doctest::Approx(0));
+  CHECK(rate->interval.high == doctest::Approx(1.0 / 24));
+}
+
 TEST_CASE("where nothing happened, or nothing was read, there is no table") {
   Made made;
   for (auto& told : made.events.told) {
