@@ -106,9 +106,9 @@ Result<Rule> rule_from_text(const std::string& text, const std::string& where) {
   return rule;
 }
 
-Sha256 rank_of(Rule::Kind kind, const Sha256& episode_id, int seed) {
+Sha256 rank_of(Rule::Kind kind, std::string_view task, const Sha256& episode_id, int seed) {
   Hasher hasher;
-  hasher.text("until").hash(episode_id);
+  hasher.text("until").text(task).hash(episode_id);
   if (kind != Rule::Kind::kDecided)
     hasher.u64(static_cast<std::uint64_t>(static_cast<std::int64_t>(seed)));
   return hasher.finish();

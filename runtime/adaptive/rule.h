@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/result.h"
 #include "runtime/base/sha256.h"
@@ -42,7 +43,8 @@ Result<Rule> rule_from_text(const std::string& text, const std::string& where);
 
 // What the order is sorted by: a hash that nobody can know the outcome by, so that every beginning
 // of the order is a sample drawn beforehand. Of a decision all seeds of a start stand together,
-// since a start is what one side wins.
-Sha256 rank_of(Rule::Kind kind, const Sha256& episode_id, int seed);
+// since a start is what one side wins. Tasks may have the same episodes under other names, with the
+// same outcomes: their orders are not to be the same.
+Sha256 rank_of(Rule::Kind kind, std::string_view task, const Sha256& episode_id, int seed);
 
 }  // namespace probe::adaptive

@@ -10,6 +10,7 @@
 #include "runtime/base/percent.h"
 #include "runtime/base/printable.h"
 #include "runtime/store/not_attempted.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::adaptive {
 namespace {
@@ -273,9 +274,12 @@ std::vector<std::string> to_lines(const Summary& summary, bool is_long) {
 }
 
 std::string why_not_fixed(const std::string& until) {
-  return "how many episodes were run depended on how they ended (--until: " +
-         printable(in_words(until), kLongestName) +
-         "), which tests and intervals of a fixed number do not allow for";
+  const std::string why =
+      store::is_by_search(until)
+          ? std::string("a search chose its episodes by what it found")
+          : "how many episodes were run depended on how they ended (--until: " +
+                printable(in_words(until), kLongestName) + ")";
+  return why + ", which tests and intervals of a fixed number do not allow for";
 }
 
 }  // namespace probe::adaptive

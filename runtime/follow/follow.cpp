@@ -23,6 +23,7 @@
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/results.h"
 #include "runtime/store/store.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::follow {
 namespace {
@@ -230,10 +231,14 @@ std::vector<std::string> to_lines(const Seen& seen) {
     if (const auto left = seen.left_s()) line += fmt::format(", {} left", duration_text(*left));
   }
   std::vector<std::string> lines = {line};
-  if (!seen.until.empty())
+  const std::string dir = shell_word(printable(seen.dir, kLongestWhy));
+  if (store::is_by_search(seen.until)) {
+    lines.push_back("  " + store::what_chose(seen.until) + "; `vlaprobe search show " + dir +
+                    "` says what was found");
+  } else if (!seen.until.empty()) {
     lines.push_back(fmt::format("  until {}; `vlaprobe results {}` has its rates",
-                                printable(adaptive::in_words(seen.until), kLongestWhy),
-                                shell_word(printable(seen.dir, kLongestWhy))));
+                                printable(adaptive::in_words(seen.until), kLongestWhy), dir));
+  }
   for (const auto& [name, count] : seen.rates) {
     if (!seen.until.empty()) {
       lines.push_back(fmt::format("  {:<12} {:>9} of {:<9}", printable(name, kLongestWhy),

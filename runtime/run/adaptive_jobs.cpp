@@ -7,6 +7,7 @@
 
 #include "runtime/store/not_attempted.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::run {
 namespace {
@@ -25,8 +26,9 @@ bool has_success(const plan::Plan& plan, std::uint32_t task) {
 void sort_jobs(const adaptive::Rule& rule, const plan::Plan& plan, std::vector<EpisodeJob>& jobs) {
   std::vector<std::pair<Sha256, EpisodeJob>> ranked;
   for (const EpisodeJob& job : jobs) {
-    const Sha256 id{plan.episodes(plan.tasks()[job.task])[job.index].episode_id};
-    ranked.emplace_back(adaptive::rank_of(rule.kind, id, job.seed), job);
+    const plan::TaskRecord& task = plan.tasks()[job.task];
+    const Sha256 id{plan.episodes(task)[job.index].episode_id};
+    ranked.emplace_back(adaptive::rank_of(rule.kind, plan.text(task.name), id, job.seed), job);
   }
   std::ranges::sort(ranked, {}, [](const auto& one) {
     return std::tuple(one.first, one.second.task, one.second.index, one.second.seed);
@@ -58,9 +60,9 @@ Result<std::map<EpisodeKey, bool>> read_other(adaptive::Rule& rule, const plan::
     return usage("is a run of another plan: nothing is decided against it", dir);
   if (record->identity.only_success) return usage(std::string(store::kSuccessesAlone), dir);
   if (!record->identity.until.empty())
-    return usage("stopped by what it found (" + record->identity.until +
-                     "): which episodes it has depends on how they ended; `--until none` runs the "
-                     "others",
+    return usage(store::what_chose(record->identity.until) +
+                     ": which episodes it has depends on how they ended; " +
+                     store::way_out(record->identity.until),
                  dir);
   PROBE_ASSIGN(const store::ProvenResults proven, store::read_proven_results(dir));
   std::map<EpisodeKey, bool> successes;

@@ -77,9 +77,10 @@ void note_idle_tasks(const plan::Plan& plan, const Selection& selection, const s
 
 using store::EpisodeKey;
 
-// Leaves the jobs that are not stored yet, or only as invalid. Returns the others.
+// Leaves the jobs that are not stored yet, or only as invalid. Returns the others. Where a rule chooses,
+// nobody knows yet which of the invalid ones it comes to again.
 std::set<EpisodeKey> drop_stored(const plan::Plan& plan,
-                                 const std::vector<store::StoredEpisode>& stored,
+                                 const std::vector<store::StoredEpisode>& stored, bool has_rule,
                                  std::vector<EpisodeJob>& jobs, RunSummary& summary) {
   constexpr std::size_t kToldOneByOne = 5;
   std::set<EpisodeKey> chosen, valid;
@@ -90,12 +91,15 @@ std::set<EpisodeKey> drop_stored(const plan::Plan& plan,
     if (episode.valid || episode.why.starts_with(store::kNotAttempted)) {
       valid.insert(episode.key);
     } else if (++again <= kToldOneByOne) {
-      summary.notes.push_back(to_text(episode.key) + " was run again: " + episode.why);
+      summary.notes.push_back(to_text(episode.key) +
+                              (has_rule ? " is run again if the rule needs it: " : " was run again: ") +
+                              episode.why);
     }
   }
   if (again > kToldOneByOne) {
     summary.notes.push_back(std::to_string(again - kToldOneByOne) +
-                            " more invalid or damaged episodes were run again");
+                            (has_rule ? " more invalid or damaged episodes are run again if it does"
+                                      : " more invalid or damaged episodes were run again"));
   }
   std::erase_if(jobs, [&](const EpisodeJob& job) { return valid.contains(key_of(plan, job)); });
   return valid;
@@ -415,7 +419,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     PROBE_TRY(store->freeze_order(order));
   const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored_rows, store->episodes());
-  const auto stored = drop_stored(plan, stored_rows, selection.jobs, summary);
+  const auto stored = drop_stored(plan, stored_rows, options.until.has_value(), selection.jobs, summary);
   std::optional<AdaptiveJobs> adaptive_jobs;
   if (options.until) {
     selection.jobs = chosen;

@@ -5,10 +5,13 @@
 
 #include "runtime/base/json.h"
 #include "runtime/base/percent.h"
+#include "runtime/base/printable.h"
 #include "runtime/store/callers_policy.h"
 
 namespace probe::store {
 namespace {
+
+constexpr std::size_t kLongestShown = 200;
 
 Failure record_failure(const std::string& message, const std::string& where) {
   return {Fault::kStore, message, where};
@@ -135,7 +138,7 @@ RunChanges changes_between(const RunRecord& stored, const RunRecord& asked) {
     const auto ends = [](const std::string& until) {
       if (until == kBySearch) return std::string("a search chooses the episodes of");
       return until.empty() ? std::string("runs all its episodes")
-                           : "stops by `--until` (" + until + ")";
+                           : "stops by `--until` (" + printable(until, kLongestShown) + ")";
     };
     changes.identity = "holds a run that " + ends(there.until) + ", not one that " + ends(here.until);
     if (here.until.empty() && there.until != kBySearch)

@@ -46,9 +46,15 @@ TEST_CASE("what is no rule is refused with what would be one") {
 
 TEST_CASE("the order of a decision keeps a start's seeds together, that of a width does not") {
   const Sha256 one = sha256("one");
-  CHECK(rank_of(Rule::Kind::kDecided, one, 1) == rank_of(Rule::Kind::kDecided, one, 2));
-  CHECK(rank_of(Rule::Kind::kEachTask, one, 1) != rank_of(Rule::Kind::kEachTask, one, 2));
-  CHECK(rank_of(Rule::Kind::kEachTask, one, 1) == rank_of(Rule::Kind::kAllTasks, one, 1));
+  CHECK(rank_of(Rule::Kind::kDecided, "t", one, 1) == rank_of(Rule::Kind::kDecided, "t", one, 2));
+  CHECK(rank_of(Rule::Kind::kEachTask, "t", one, 1) != rank_of(Rule::Kind::kEachTask, "t", one, 2));
+  CHECK(rank_of(Rule::Kind::kEachTask, "t", one, 1) == rank_of(Rule::Kind::kAllTasks, "t", one, 1));
+}
+
+TEST_CASE("tasks whose episodes are the same have orders of their own") {
+  const Sha256 one = sha256("one");
+  for (const auto kind : {Rule::Kind::kEachTask, Rule::Kind::kAllTasks, Rule::Kind::kDecided})
+    CHECK(rank_of(kind, "a", one, 1) != rank_of(kind, "b", one, 1));
 }
 
 }  // namespace probe::adaptive

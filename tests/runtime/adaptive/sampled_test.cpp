@@ -95,4 +95,12 @@ TEST_CASE("seeds that were drawn together are lists of their own, each with its 
   CHECK(together.summary().decision->won() == 15);
 }
 
+TEST_CASE("why nothing of a fixed number is said of a rule's run, and of a search's") {
+  CHECK(why_not_fixed("width 10 % of each task").find("(--until: width 10 % of each task)") !=
+        std::string::npos);
+  const std::string search = why_not_fixed(std::string(store::kBySearch));
+  CHECK(search.find("--until") == std::string::npos);
+  CHECK(search.find("a search chose its episodes by what it found, which tests") == 0);
+}
+
 }  // namespace probe::adaptive

@@ -70,6 +70,12 @@ TEST_CASE("of a run that stops by what it finds counts are told, and no interval
   const std::vector<std::string> lines = to_lines(seen);
   CHECK(lines[1].find("until width 20 % of all tasks; `vlaprobe results ") != std::string::npos);
   for (const std::string& line : lines) CHECK(line.find("[") == std::string::npos);
+  Seen of_search = seen;
+  of_search.until = store::kBySearch;
+  const std::string search = to_lines(of_search)[1];
+  CHECK(search.find("is of a search, which chose its episodes") != std::string::npos);
+  CHECK(search.find("vlaprobe search show ") != std::string::npos);
+  CHECK(search.find("vlaprobe results ") == std::string::npos);
 }
 
 TEST_CASE("shards count together, and those that have not begun are scaled up") {

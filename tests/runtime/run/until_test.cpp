@@ -9,6 +9,7 @@
 
 #include "runtime/adaptive/sampled.h"
 #include "runtime/policy/scripted.h"
+#include "runtime/run/adaptive_jobs.h"
 #include "runtime/run/policies.h"
 #include "runtime/run/run.h"
 #include "runtime/store/chosen.h"
@@ -136,6 +137,23 @@ TEST_CASE("a call of two worlds that fails left an episode, so tasks were chosen
   CHECK(adaptive::read_adaptive(folder / "run").value()->drawing == stats::Drawing::kAnyhow);
 }
 
+TEST_CASE("two tasks with the same episodes have orders of their own") {
+  const plan::Plan plan = plan_of_text(
+      "use \"suite/intact.probe\"\n"
+      "task one like carrot_on_plate { horizon 5 steps }\n"
+      "task two like carrot_on_plate { horizon 5 steps }\n"
+      "suite mine trained on bridge_v2 { tasks { one, two }; seeds 42 }\n");
+  REQUIRE(plan.episodes(plan.tasks()[0])[0].episode_id == plan.episodes(plan.tasks()[1])[0].episode_id);
+  std::vector<EpisodeJob> jobs;
+  for (std::uint32_t task = 0; task < 2; ++task)
+    for (std::uint32_t index = 0; index < 24; ++index) jobs.push_back({task, index, 42});
+  adaptive::Rule rule = *adaptive::parse_rule("width 10%");
+  REQUIRE(put_in_order(rule, plan, "", jobs).ok());
+  std::vector<std::uint32_t> starts[2];
+  for (const EpisodeJob& job : jobs) starts[job.task].push_back(job.index);
+  CHECK(starts[0] != starts[1]);
+}
+
 TEST_CASE("all tasks together stop in one order, which no shard has") {
   TemporaryFolder folder;
   const plan::Plan plan = two_tasks();
@@ -251,6 +269,9 @@ TEST_CASE("episodes that are invalid are done again, and else count as either") 
   CHECK(first.until[1].find("1 invalid may have been either") != std::string::npos);
   fails = false;
   const RunSummary second = must_run(plan, options);
+  CHECK(std::ranges::any_of(second.notes, [](const std::string& note) {
+    return note.find(" is run again if the rule needs it: ") != std::string::npos;
+  }));
   CHECK(second.done == 1);
   CHECK(second.until[1].find("invalid") == std::string::npos);
 }
