@@ -6,6 +6,7 @@
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::ask {
 
@@ -14,9 +15,10 @@ Result<Recorded> read_recorded(const plan::Plan& plan, const std::string& dir,
   PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(dir));
   if (!record.identity.until.empty()) {
     return Failure{Fault::kUsage,
-                   "stopped by what it found (" + record.identity.until +
-                       "): rates of answers about its ends would be of episodes that were chosen by "
-                       "how they ended; `run --until none` runs the others",
+                   store::what_chose(record.identity.until) +
+                       ": rates of answers about its ends would be of episodes that were chosen by "
+                       "how they ended; " +
+                       store::way_out(record.identity.until),
                    dir};
   }
   PROBE_ASSIGN(store::ProvenResults proven, store::read_proven_results(dir));

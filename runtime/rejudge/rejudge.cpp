@@ -6,6 +6,7 @@
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
 #include "runtime/store/stored_trace.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::rejudge {
 namespace {
@@ -49,9 +50,9 @@ Result<RejudgeReport> rejudge(const std::string& dir, const plan::Plan& plan,
     // Under other rules its order and what it was decided against would mean something else.
     if (!record.identity.until.empty()) {
       return Failure{Fault::kUsage,
-                     "stopped by what it found (" + record.identity.until +
-                         "), which a folder of other verdicts would not say: judge it without -o, or "
-                         "run the other episodes first with `run --until none`",
+                     store::what_chose(record.identity.until) +
+                         ", which a folder of other verdicts would not say: judge it without -o; " +
+                         store::way_out(record.identity.until),
                      dir};
     }
   }

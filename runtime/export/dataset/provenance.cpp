@@ -8,6 +8,7 @@
 #include "runtime/base/io_failure.h"
 #include "runtime/base/json.h"
 #include "runtime/base/paths.h"
+#include "runtime/store/until_words.h"
 
 namespace probe::dataset {
 namespace {
@@ -79,9 +80,8 @@ std::string readme(const Provenance::Facts& facts, const Contents& contents,
                         to_hex(source.plan.root()), source.rows.size());
   for (const Source& source : facts.sources) {
     if (!source.until.empty())
-      text += fmt::format("\n`{}` was run with `--until` ({}): how many episodes it has depends on how "
-                          "they ended.\n",
-                          source.dir, source.until);
+      text += fmt::format("\n`{}` {}: which episodes it has depends on how they ended.\n", source.dir,
+                          store::what_chose(source.until));
   }
   text += "\n`" + std::string(kDemonstrationsPath) +
           "` has each demonstration's task, start, seed, trace, wordings and metrics; `vlaprobe "

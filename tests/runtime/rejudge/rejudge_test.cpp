@@ -8,7 +8,10 @@
 #include "runtime/rejudge/match.h"
 #include "runtime/rejudge/program_view.h"
 #include "runtime/rejudge/rescore.h"
+#include "runtime/store/run_record.h"
+#include "runtime/store/store.h"
 #include "tests/runtime/rejudge/made_trace.h"
+#include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::rejudge {
 namespace {
@@ -33,6 +36,23 @@ TEST_CASE("a trace is judged to the horizon, and its metrics are those of its st
   CHECK(score->metrics[0] == store::MetricValue{"near", true, 1});
   CHECK(score->steps[12][2] == 0);  // touched for 4 steps
   CHECK(score->steps[13][2] == 1);
+}
+
+TEST_CASE("a search's run is not judged into a folder, and has no others to run") {
+  const plan::Plan plan = small();
+  run::TemporaryFolder folder;
+  store::RunRecord record;
+  record.identity.plan_root = to_hex(plan.root());
+  record.identity.policy = "pi0";
+  record.identity.until = store::kBySearch;
+  record.fingerprint.entries = {{"cpu", "test"}};
+  REQUIRE(store::Store::open(folder / "run", record, plan.bytes()).ok());
+  RejudgeOptions options;
+  options.out = folder / "out";
+  const auto refused = probe::rejudge::rejudge(folder / "run", plan, options);
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message.find("is of a search") == 0);
+  CHECK(refused.failure().message.find("--until") == std::string::npos);
 }
 
 TEST_CASE("measurements that are not the task's are refused with the reason") {

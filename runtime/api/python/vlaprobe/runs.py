@@ -19,6 +19,7 @@ from .plan import Path, Plan, PlanLike, Task, plan_of
 IF_CHANGED = {"refuse": 0, "fork": 1, "continue": 2}
 _VIDEOS = {"none": 0, "failures": 1, "all": 2}
 _LONGEST_REASON = 8000  # characters of an invalid row
+_BY_SEARCH = "chosen by a search"  # what `until` is of a folder whose episodes a search chose
 
 PolicyCallable = Callable[[dict], Any]
 
@@ -135,7 +136,8 @@ class Results(list):
         )
         note = f"<p>not counted: {', '.join(self._uncounted())}</p>" if len(self.valid) < len(self) else ""
         if self.until:
-            note += f"<p>stops by {html.escape(self.until)}: counts, not rates of all</p>"
+            by = self.until if self.until == _BY_SEARCH else f"stops by {self.until}"
+            note += f"<p>{html.escape(by)}: counts, not rates of all</p>"
         return f"<p>{html.escape(self.policy)}</p><table><tr><th>task</th><th>success</th></tr>{rows}</table>{note}"
 
 
