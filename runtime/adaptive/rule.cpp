@@ -6,11 +6,13 @@
 #include <optional>
 #include <string_view>
 
+#include "runtime/base/printable.h"
 #include "runtime/store/run_record.h"
 
 namespace probe::adaptive {
 namespace {
 
+constexpr std::size_t kLongestShown = 200;
 constexpr std::string_view kWidth = "width ", kDecidedWord = "decided-against ";
 constexpr std::string_view kOfEach = store::kOfEachTask, kOfAll = "of all tasks";
 constexpr std::string_view kDecidedText = "decided against `", kOutcomes = "` (outcomes ";
@@ -90,7 +92,8 @@ Result<Rule> rule_from_text(const std::string& text, const std::string& where) {
                    "`vlaprobe search show DIR` says what was found, `results --csv` lists episodes",
                    where};
   const Failure unknown{Fault::kStore,
-                        "stops by a rule that this program does not know: `" + text + "`", where};
+                        "stops by a rule that this program does not know: `" + printable(text, kLongestShown) + "`",
+                        where};
   if (text.starts_with(kDecidedText)) {
     Rule rule;
     rule.kind = Rule::Kind::kDecided;

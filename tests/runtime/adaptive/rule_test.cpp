@@ -42,6 +42,7 @@ TEST_CASE("what is no rule is refused with what would be one") {
     REQUIRE_FALSE_MESSAGE(rule.ok(), text);
     CHECK(rule.failure().where == "run");
   }
+  CHECK(rule_from_text("\x1b[31mred", "run").failure().message.find('\x1b') == std::string::npos);
 }
 
 TEST_CASE("the order of a decision keeps a start's seeds together, that of a width does not") {
