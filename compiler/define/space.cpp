@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "compiler/define/axes.h"
 #include "compiler/define/define.h"
 #include "compiler/define/role.h"
 #include "compiler/define/template.h"
@@ -30,13 +31,26 @@ struct SpaceReader {
   std::vector<View> views;
 
   void add(SpaceAxis axis) {
-    const auto before = std::ranges::find(space.axes, axis.name, &SpaceAxis::name);
+    // What sets of axes are written in (search/method/minimal.h).
+    constexpr std::size_t kMostAxes = 63;
+    if (space.axes.size() == kMostAxes) {
+      context.report(Situation::kSpaceRange, axis.span, "expected at most 63 axes in a space");
+      return;
+    }
+    const auto before = std::ranges::find_if(space.axes, [&](const SpaceAxis& one) {
+      return one.name == axis.name ||
+             (one.kind == SpaceAxisKind::kPlace && axis.kind == SpaceAxisKind::kPlace &&
+              one.object == axis.object);
+    });
     if (before == space.axes.end()) {
       space.axes.push_back(std::move(axis));
       return;
     }
     // Other statements that are said twice are reported as such.
-    if (axis.kind != SpaceAxisKind::kPlace) return;
+    const bool adds_up = axis.kind == SpaceAxisKind::kPlace ||
+                         axis.kind == SpaceAxisKind::kTemplate ||
+                         axis.kind == SpaceAxisKind::kPhrase;
+    if (!adds_up) return;
     context.report(Code::P0203, axis.span, "`" + axis.name + "` varies twice in this space")
         .label(before->span, "first said here");
   }
@@ -79,7 +93,7 @@ struct SpaceReader {
     }
   }
   void range(SpaceAxisKind kind, const syntax::SpaceRange& written, const Dimension& dimension,
-             const Takes& takes, double own, const char* what) {
+             const Takes& takes, double own, const char* what, double most = 1e12) {
     const auto low = read_si(context, written.low, dimension, takes);
     const auto high = read_si(context, written.high, dimension, takes);
     if (!low || !high) return;
@@ -88,6 +102,11 @@ struct SpaceReader {
     if (is_factor ? *low <= 0 : *low < 0) {
       context.report(is_factor ? Situation::kNotPositive : Situation::kNegative, written.low.span,
                      is_factor ? "expected a factor of more than 0" : "expected 0 or more");
+      return;
+    }
+    if (*high > most) {
+      context.report(Situation::kColorRange, written.high.span,
+                     "expected at most " + number_text(most) + std::string(info_of(kind).unit));
       return;
     }
     range(axis_of(kind, span), *low, *high, own, what);
@@ -294,8 +313,9 @@ struct SpaceReader {
               !counts_fit(context.model, task, words))
             continue;
           other.say = id;
-          const std::string text = render_prompt(context.model, other);
-          if (std::ranges::find(said, text) != said.end()) continue;
+          const std::string text = other.prompt = render_prompt(context.model, other);
+          if (std::ranges::find(said, text) != said.end() || !differs(context.model, other, task))
+            continue;
           said.push_back(text);
           axis.choices.push_back(words.name);
         }
@@ -343,13 +363,13 @@ struct SpaceReader {
     }
     if (stmt.noise)
       range(SpaceAxisKind::kNoise, *stmt.noise, dim::kNumber, {"`noise` takes numbers"}, own.noise,
-            "a noise");
+            "a noise", 1);
     if (stmt.blur)
       range(SpaceAxisKind::kBlur, *stmt.blur, dim::kPixel, {"`blur` takes pixels"}, own.blur,
-            "a blur");
+            "a blur", plan::kMaxBlur);
     if (stmt.exposure)
       range(SpaceAxisKind::kExposure, *stmt.exposure, dim::kNumber, {"`exposure` takes factors"},
-            own.exposure == 0 ? 1 : own.exposure, "an exposure");
+            own.exposure == 0 ? 1 : own.exposure, "an exposure", plan::kMaxExposure);
   }
 
   void operator()(const syntax::SpaceDelayStmt& stmt) {
@@ -359,8 +379,20 @@ struct SpaceReader {
     if (!low || !high) return;
     const Robot& robot = context.model.robots[context.model.scenes[task.scene].robot];
     const auto steps = [&](double time) { return std::round(time * robot.control_hz); };
-    range(axis_of(SpaceAxisKind::kDelay, stmt.span), steps(*low), steps(*high), task.delay,
-          "a delay");
+    if (*low < 0) {
+      context.report(Situation::kNegative, stmt.range.low.span, "expected 0 or more");
+    } else if (steps(*high) >= static_cast<double>(task.horizon)) {
+      context.report(Situation::kSpaceRange, stmt.range.high.span,
+                     "expected a delay that is shorter than the episode, which has " +
+                         std::to_string(task.horizon) + " steps");
+    } else if (steps(*low) == steps(*high)) {
+      context.report(Situation::kSpaceRange, stmt.span,
+                     "expected a range over several steps of " + number_text(robot.control_hz) +
+                         "Hz, found one: " + number_text(steps(*low)));
+    } else {
+      range(axis_of(SpaceAxisKind::kDelay, stmt.span), steps(*low), steps(*high), task.delay,
+            "a delay");
+    }
   }
 };
 

@@ -48,6 +48,7 @@ std::optional<std::vector<sema::Start::Placed>> lay_clutter(
     const std::vector<sema::ObjectId>& objects, std::uint64_t of) {
   const sema::Scene& scene = model.scenes[task.scene];
   const auto& area = scene.area;
+  const sema::Robot& robot = model.robots[scene.robot];
   std::vector<sema::Footprint> there;
   for (const sema::Start::Placed& placed : start.placed)
     there.push_back(footprint(model.objects[placed.object], placed));
@@ -70,6 +71,10 @@ std::optional<std::vector<sema::Start::Placed>> lay_clutter(
       placed.turn = about_vertical(2 * std::numbers::pi * draw(of, what, 3 * t + 2), rest);
       const sema::Footprint print = footprint(object, placed);
       if (!is_inside(print, area) || !is_seen(eyes, object, placed)) continue;
+      // The compiler wants all that lies around within the arm's reach (P0502).
+      const double far =
+          std::hypot(placed.x - scene.base_position[0], placed.y - scene.base_position[1]);
+      if (far < robot.reach_min || far > robot.reach_max) continue;
       bool free = true;
       for (const sema::Footprint& other : there) free = free && overlap(print, other) < -kRoom;
       if (!free) continue;

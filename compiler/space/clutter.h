@@ -1,4 +1,5 @@
-// Where clutter lies: in each start of its own, clear of what is there and in the picture.
+// Where clutter lies: in each start of its own, clear of what is there, in the picture and within
+// reach.
 #pragma once
 
 #include <cstdint>

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "compiler/define/role.h"
 #include "compiler/define/views.h"
+#include "compiler/geometry/footprint.h"
 #include "compiler/space/clutter.h"
 #include "compiler/space/draws.h"
+#include "runtime/base/geometry.h"
 #include "runtime/base/trig.h"
 
 namespace probe::space {
@@ -34,7 +37,22 @@ bool is_changed(const SpaceAxis& axis, double value) {
   return effective(axis, value) != effective(axis, axis.own);
 }
 
-std::string number(double value) { return fmt::format("{}", value + 0.0); }
+// As a text may have it: no exponent, 18 decimals at most, never -0; to the bit where that allows.
+std::string number(double value) {
+  constexpr std::size_t kMostDecimals = 18;
+  std::string text = fmt::format("{}", value + 0.0);
+  const std::size_t point = text.find('.');
+  const bool fits = text.find('e') == text.npos &&
+                    (point == text.npos || text.size() - point - 1 <= kMostDecimals);
+  if (fits) return text;
+  text = fmt::format("{:.18f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+// As a table may have it: to the bit.
+std::string cell(double value) { return fmt::format("{}", value + 0.0); }
 
 std::string vector_text(const std::array<double, 3>& v, const char* unit) {
   return fmt::format("({}{}, {}{}, {}{})", number(v[0]), unit, number(v[1]), unit, number(v[2]),
@@ -309,6 +327,19 @@ class Writer {
       rows.push_back(std::move(row));
       out.starts.push_back(number);
     }
+    // Jitter goes by a start's number, which a table without the starts before it does not keep.
+    const bool is_jittered =
+        model_.layouts[task_.layout].joints_jitter > 0 ||
+        std::ranges::any_of(sema::views_of(model_, task_), [&](const sema::View& view) {
+          return model_.cameras[view.camera].jitters();
+        });
+    if (is_jittered && rows.size() != task_.starts.size()) {
+      out.left_out =
+          fmt::format("{} of {} starts would be left, and those that jitter keep all or none",
+                      rows.size(), task_.starts.size());
+      out.starts.clear();
+      return false;
+    }
     if (rows.empty()) {
       out.left_out = fmt::format("{} more things find no room in any start", around.size());
       return false;
@@ -316,8 +347,15 @@ class Writer {
     const auto has_height = [](const Row& row) {
       return std::ranges::all_of(row.start.placed, [](const auto& p) { return p.z.has_value(); });
     };
-    const bool heights = around.empty() && std::ranges::all_of(rows, has_height);
+    const bool heights = std::ranges::all_of(rows, has_height);
     const sema::Layout& own = model_.layouts[task_.layout];
+    const double surface = model_.scenes[task_.scene].surface_z;
+    // As high above the surface as things of the layout fall from.
+    const auto height_of = [&](const sema::Start::Placed& p) {
+      const auto& q = p.turn.rotation;
+      const Mat3 turn = Quat(q[0], q[1], q[2], q[3]).toRotationMatrix();
+      return p.z.value_or(surface - sema::lowest(model_.objects[p.object], turn) + own.drop);
+    };
     const bool joints = !own.given_joints.empty();
     WrittenTable table;
     table.file = table_folder + point_.name + ".csv";
@@ -325,18 +363,18 @@ class Writer {
                  (joints ? ",value" : "") + "\n";
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const auto line = [&](const std::string& object, const sema::Start::Placed& p) {
-        table.text += fmt::format("{},{},{},{}", r, object, number(p.x), number(p.y));
-        if (heights) table.text += "," + number(*p.z);
-        for (const double q : p.turn.rotation) table.text += "," + number(q);
+        table.text += fmt::format("{},{},{},{}", r, object, cell(p.x), cell(p.y));
+        if (heights) table.text += "," + cell(height_of(p));
+        for (const double q : p.turn.rotation) table.text += "," + cell(q);
         table.text += joints ? ",\n" : "\n";
       };
       for (const sema::Start::Placed& placed : rows[r].start.placed)
-        line(model_.objects[placed.object].name, placed);
+        line(row_name(own, placed.object), placed);
       for (std::size_t i = 0; i < rows[r].clutter.size(); ++i) line(names[i], rows[r].clutter[i]);
       if (!joints) continue;
       for (const sema::GivenJoint& joint : own.given_joints[rows[r].start.given])
         table.text += fmt::format("{},{},,{},,,,,{}\n", r, joint.what.text, heights ? "," : "",
-                                  number(joint.value));
+                                  cell(joint.value));
     }
     declarations_ +=
         "layout " + point_.name + "_layout like " + own.name + " { starts \"" + table.file + "\"";
@@ -354,6 +392,20 @@ class Writer {
     }
     out.table = std::move(table);
     return true;
+  }
+
+  // As the layout's own table calls it, where it has one: by its role, maybe.
+  std::string row_name(const sema::Layout& layout, sema::ObjectId object) const {
+    const std::string& name = model_.objects[object].name;
+    if (layout.given.empty()) return name;
+    for (const sema::GivenPlace& given : layout.given.front()) {
+      if (given.what.text == name) return name;
+      const auto role = sema::find_role(model_, given.what.text);
+      if (!role) continue;
+      const std::vector<sema::ObjectId> filled = task_.objects_in(*role);
+      if (filled.size() == 1 && filled.front() == object) return given.what.text;
+    }
+    return name;
   }
 
   void words() {
@@ -392,6 +444,13 @@ std::vector<std::size_t> changed_axes(const sema::Space& space, const std::vecto
     if (is_changed(space.axes[i], values[i])) changed.push_back(i);
   }
   return changed;
+}
+
+std::vector<double> seen_values(const sema::Space& space, std::vector<double> values) {
+  for (std::size_t i = 0; i < space.axes.size(); ++i) {
+    if (!is_changed(space.axes[i], values[i])) values[i] = space.axes[i].own;
+  }
+  return values;
 }
 
 std::vector<double> placed_values(const sema::Space& space, const std::vector<double>& values) {

@@ -25,6 +25,8 @@ struct Point {
 std::vector<double> own_values(const sema::Space& space);
 // Axes by index that differ from the task's own, where a difference can be seen at all.
 std::vector<std::size_t> changed_axes(const sema::Space& space, const std::vector<double>& values);
+// The same point where a change that nobody sees is none: the task's own value to the bit.
+std::vector<double> seen_values(const sema::Space& space, std::vector<double> values);
 // Only what changes where things lie; all else as the task has it: two points that agree in this
 // are solved alike by one who sees nothing.
 std::vector<double> placed_values(const sema::Space& space, const std::vector<double>& values);

@@ -46,6 +46,12 @@ std::vector<std::uint32_t> all_tasks(const plan::Plan& plan) {
   return tasks;
 }
 
+std::vector<EpisodeJob> one_of_each(const plan::Plan& plan) {
+  std::vector<EpisodeJob> jobs;
+  for (const std::uint32_t task : all_tasks(plan)) jobs.push_back({task, 0, 0});
+  return jobs;
+}
+
 // Rows of the run that `replay:DIR` repeats; only those that came to an end.
 Result<std::vector<store::ResultRow>> recorded_rows(const std::string& dir) {
   const auto record = store::read_run_record(dir);
@@ -179,10 +185,10 @@ Status check_worlds(const RunOptions& options, const Actor& actor) {
 }
 
 // A server of recorded episodes answers any seed with those of its own.
-Status check_seeds(const Selection& selection, const Actor& actor) {
+Status check_seeds(const std::vector<EpisodeJob>& jobs, const Actor& actor) {
   if (!actor.server || !actor.server->only_seed) return {};
   const std::string own = std::to_string(*actor.server->only_seed);
-  for (const EpisodeJob& job : selection.jobs) {
+  for (const EpisodeJob& job : jobs) {
     if (job.seed == *actor.server->only_seed) continue;
     return Failure{Fault::kUsage,
                    "the server has the episodes of seed " + own + ", not of seed " +
@@ -257,6 +263,8 @@ Result<std::optional<adaptive::Rule>> rule_to_drop(const RunOptions& options) {
 
 // What a run that stops by itself knows now; whoever follows it is told when no more will come.
 Status sum_up(const std::string& out, RunSummary& summary) {
+  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(out));
+  if (record.identity.until == store::kBySearch) return {};
   PROBE_ASSIGN(const auto run, adaptive::read_adaptive(out));
   if (!run) return {};
   adaptive::Summarizer sums(*run);
@@ -376,7 +384,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     summary.notes.push_back("shard " + std::to_string(options.shard) + "/" +
                             std::to_string(options.shards) + " holds no episode: nothing to do");
   }
-  PROBE_TRY(check_seeds(selection, actor));
+  PROBE_TRY(check_seeds(selection.jobs, actor));
   std::vector<store::OrderedEpisode> order;
   if (options.until) {
     PROBE_TRY(check_adaptive(*options.until, plan, options, traits.recorded, is_of_successes,
@@ -420,6 +428,11 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const std::vector<EpisodeJob> chosen = selection.jobs;
   PROBE_ASSIGN(const auto stored_rows, store->episodes());
   const auto stored = drop_stored(plan, stored_rows, options.until.has_value(), selection.jobs, summary);
+  std::set<EpisodeKey> known_before;  // of whoever chooses on
+  for (const store::StoredEpisode& episode : stored_rows) {
+    if (options.next && (episode.valid || episode.why.starts_with(store::kNotAttempted)))
+      known_before.insert(episode.key);
+  }
   std::optional<AdaptiveJobs> adaptive_jobs;
   if (options.until) {
     selection.jobs = chosen;
@@ -445,11 +458,15 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   }
 
   summary.call.fingerprint = fingerprint;
-  summary.call.worlds = static_cast<int>(std::min((is_there_all ? chosen : selection.jobs).size(),
-                                                  static_cast<std::size_t>(options.jobs)));
+  // Who chooses on may choose more than there are at first.
+  summary.call.worlds =
+      options.next ? options.jobs
+                   : static_cast<int>(std::min((is_there_all ? chosen : selection.jobs).size(),
+                                               static_cast<std::size_t>(options.jobs)));
   std::optional<ServerProof> proof;
   if (actor.server) {
-    PROBE_ASSIGN(const servers::KnownArm arm, arm_of(plan, chosen, *assets));
+    PROBE_ASSIGN(const servers::KnownArm arm,
+                 arm_of(plan, options.next ? one_of_each(plan) : chosen, *assets));
     proof.emplace(*actor.server, summary.call.worlds, arm);
     PROBE_ASSIGN(summary.call.reading, proof->ask());
     PROBE_TRY(proof->check_as_before(*summary.call.reading, options, *store, summary.notes));
@@ -497,7 +514,9 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
     auto more = options.next();
     if (!more) ran = more.failure();
     if (!more || more->empty()) break;
-    std::erase_if(*more, [&](const EpisodeJob& job) { return stored.contains(key_of(plan, job)); });
+    if (ran = check_seeds(*more, actor); !ran) break;
+    std::erase_if(*more,
+                  [&](const EpisodeJob& job) { return known_before.contains(key_of(plan, job)); });
     shared.jobs = std::move(*more);
     summary.total += static_cast<int>(shared.jobs.size());
     ran = run_jobs(shared.jobs.size(), options.jobs, make_worker);

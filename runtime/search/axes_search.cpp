@@ -24,7 +24,8 @@ std::string text_of(const sema::Space& space, std::size_t axis, const Side& side
     case SideKind::kIsNot:
       break;
   }
-  return of.name + " other than " + value;
+  return value == "as the task" ? "other " + of.name + " than the task's"
+                                : of.name + " other than " + value;
 }
 
 }  // namespace
@@ -43,6 +44,20 @@ Status search_axes(Hunt& hunt) {
   SearchSummary& summary = hunt.summary;
   summary.lines.push_back(
       fmt::format("{} of points drawn over the whole space fail", of_text(found.failures)));
+  if (found.left_out > 0)
+    summary.lines.push_back(
+        fmt::format("{} more were left out, so what is said is of the fair part of the space "
+                    "(points.csv has why)",
+                    found.left_out));
+  if (found.failures.k == 0 || found.failures.k == found.failures.n) {
+    summary.lines.push_back(found.failures.n == 0
+                                ? "no point that was drawn is fair, so nothing was tried"
+                                : "all that were tried end alike, so there is nothing to compare");
+    summary.findings["failures"] = json_of(found.failures);
+    summary.findings["effects"] = Json::array();
+    summary.findings["pairs"] = Json::array();
+    return {};
+  }
   Json effects = Json::array(), pairs = Json::array();
   for (std::size_t i = 0; i < found.axes.size(); ++i) {
     const AxisEffect& one = found.axes[i];
@@ -51,10 +66,10 @@ Status search_axes(Hunt& hunt) {
                 ? fmt::format("matters; {} it fails {}, elsewhere {}", text_of(space, i, one.side),
                               of_text(one.there), of_text(one.elsewhere))
                 : "no effect that these trials would show";
-    line +=
-        fmt::format(" (explains {:.0f} %, {:.0f} to {:.0f}; with its pairs {:.0f} %; p = {:.2g})",
-                    100 * one.first, 100 * one.first_interval.low, 100 * one.first_interval.high,
-                    100 * one.total, one.p);
+    line += fmt::format(
+        " (explains {:.0f} %, {:.0f} to {:.0f}; with its pairs at least {:.0f} %; p = {:.2g})",
+        100 * one.first, 100 * one.first_interval.low, 100 * one.first_interval.high,
+        100 * one.total, one.p);
     summary.lines.push_back(line);
     effects.push_back({{"axis", space.axes[i].name},
                        {"matters", one.matters},

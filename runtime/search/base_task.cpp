@@ -50,6 +50,9 @@ Result<std::unique_ptr<BaseTask>> BaseTask::open(const TextOptions& options, std
         "no space is called `" + options.space + "`" + did_you_mean(options.space, names),
         "--space");
   base->space_ = &*found;
+  base->is_seen_ =
+      std::ranges::none_of(base->text_.compilation.diagnostics.items(),
+                           [](const Diagnostic& one) { return one.code == Code::P0505; });
   Hasher hasher;
   hasher.text("search text").text(found->name);
   const SourceSet& sources = base->text_.compilation.sources;

@@ -30,6 +30,8 @@ class BaseTask {
   const sema::Model& model() const { return text_.model; }
   const sema::Space& space() const { return *space_; }
   const sema::Task& task() const { return text_.model.tasks[space_->of]; }
+  // Whether nothing of the text is out of the picture: else points of it may be as well.
+  bool is_seen() const { return is_seen_; }
   // The .probe files that the text is made of: their names and bytes, hashed.
   const std::string& hash() const { return hash_; }
 
@@ -41,6 +43,7 @@ class BaseTask {
   AnalyzedText text_;
   const sema::Space* space_ = nullptr;
   std::string hash_;
+  bool is_seen_ = true;
 };
 
 }  // namespace probe::search

@@ -38,7 +38,7 @@ class BoundarySearch {
     for (const AxisSide& side : sides_of(space_, hunt.options.levels)) {
       BoundaryOptions options;
       options.levels = side.levels;
-      options.seed = hunt.options.seed + sides_.size();
+      options.seed = hunt.draw_of({static_cast<double>(sides_.size())});
       options.error = hunt.options.error;
       if (hunt.options.budget) options.budget = *hunt.options.budget;
       sides_.push_back({side, Boundary(options), {}, {}, {}});
@@ -95,21 +95,31 @@ class BoundarySearch {
     side.numbers.assign(static_cast<std::size_t>(side.side.levels), 0);
   }
 
+  // Of the sides that are shared out among several calls.
+  bool is_mine(const Side& side) const {
+    const auto number = static_cast<int>(&side - sides_.data());
+    return number % hunt_.options.run.shards == hunt_.options.run.shard - 1;
+  }
+
   std::vector<Trial> ask() {
     std::vector<Trial> trials;
     for (Side& side : sides_) {
       side.asked = 0;
-      if (side.method.done()) continue;
+      if (side.method.done() || !is_mine(side)) continue;
       const int ways = ways_of(space_.axes[side.side.axis].kind);
       for (const int level : side.method.ask()) {
         ++side.asked;
-        const std::uint64_t number = side.numbers[static_cast<std::size_t>(level)]++;
         if (level == 0 || !can_be_seen(side, level)) {
-          trials.push_back({kBase, number});
+          trials.push_back({kBase, side.numbers[0]++});
           continue;
         }
-        const auto at = static_cast<std::size_t>((level - 1) * ways) +
-                        static_cast<std::size_t>(number % static_cast<std::uint64_t>(ways));
+        const std::uint64_t number = side.numbers[static_cast<std::size_t>(level)]++;
+        const std::uint64_t way =
+            hunt_.draw_of({static_cast<double>(side.side.axis), side.side.up ? 1.0 : 0.0,
+                           static_cast<double>(level), static_cast<double>(number)}) %
+            static_cast<std::uint64_t>(ways);
+        const auto at =
+            static_cast<std::size_t>((level - 1) * ways) + static_cast<std::size_t>(way);
         trials.push_back({side.points[at], number});
       }
     }
@@ -150,7 +160,8 @@ class BoundarySearch {
       const std::string last = text_at(found.last_level);
       switch (found.status) {
         case BoundaryStatus::kFound:
-          line += fmt::format("success falls to half at {} ({}, {})", text_at(found.threshold),
+          line += fmt::format("success falls to half of what it is unchanged ({}) at {} ({}, {})",
+                              of_text(found.own), text_at(found.threshold),
                               interval_text(side, found), trials);
           break;
         case BoundaryStatus::kNoFall:
@@ -210,6 +221,11 @@ class BoundarySearch {
       axes.push_back(std::move(one));
       if (found.status == BoundaryStatus::kFound) keep(side, found, planned, line);
     }
+    for (const sema::SpaceAxis& axis : space_.axes) {
+      if (sema::info_of(axis.kind).spacing == sema::Spacing::kChoice)
+        hunt_.summary.lines.push_back(axis.name +
+                                      ": has no order; `search axes` tells whether it matters");
+    }
     hunt_.summary.findings["axes"] = std::move(axes);
   }
 
@@ -240,7 +256,7 @@ class BoundarySearch {
     return why.empty() ? "" : " (" + why + ")";
   }
 
-  // The first level that lies beyond the interval: there it fails more often than not.
+  // The first level that lies beyond the interval, in the first of its ways.
   void keep(const Side& side, const BoundaryFinding& found, const PlannedPoints& planned,
             const std::string& line) {
     const int level = std::min(static_cast<int>(std::ceil(found.high)), found.last_level);
@@ -249,7 +265,7 @@ class BoundarySearch {
         static_cast<std::size_t>((level - 1) * ways_of(space_.axes[side.side.axis].kind));
     const PlannedPoint& point = planned.points[side.points[at]];
     if (!point.task) return;
-    hunt_.keep(point.point, line);
+    hunt_.keep(point.point, "the first step beyond the interval of " + line);
   }
 
   Hunt& hunt_;

@@ -23,11 +23,12 @@ Result<PlannedPoints> Hunt::plan(std::vector<space::Point> points) {
       run::RunOptions expert;
       expert.jobs = options.run.jobs;
       expert.if_changed = options.run.if_changed;
-      solved = std::make_unique<Solved>(base, expert, round);
+      solved = std::make_unique<Solved>(base, expert);
     }
-    solved->into(round);
   }
-  return plan_points(base, std::move(points), round);
+  PROBE_ASSIGN(PlannedPoints planned, plan_points(base, std::move(points), round));
+  if (solved) PROBE_TRY(solved->begin(planned, round));
+  return planned;
 }
 
 Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
@@ -35,6 +36,8 @@ Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
   run::RunOptions run = options.run;
   run.out = (fs::path(round) / "policy").string();
   Trials trials(base, planned, run, solved.get(), options.seed, kind, first_seed);
+  // Of boundaries whole sides are shared out: what is asked next depends on what was found.
+  if (options.method == Method::kAxes) trials.share(options.run.shard, options.run.shards);
   const Status ran = trials.run(asking);
   summary.episodes += trials.episodes();
   summary.ran += trials.ran();
@@ -55,7 +58,7 @@ Status Hunt::try_points(const PointMethod& method, const std::string& kind, int 
     std::vector<Trial> trials;
     const std::vector<double> own = space::own_values(space());
     for (const Point& point : asked) {
-      const std::vector<double> values = values_of(space(), point);
+      const std::vector<double> values = space::seen_values(space(), values_of(space(), point));
       std::size_t at = kBase;
       if (!space::changed_axes(space(), values).empty()) {
         const auto [known, is_new] = index.try_emplace(values, points.size());
@@ -76,7 +79,10 @@ Status Hunt::try_points(const PointMethod& method, const std::string& kind, int 
       summary.trials += static_cast<int>(outcomes.size());
       method.tell(outcomes);
     };
-    PROBE_TRY(try_out(planned, asking, kind + "/" + std::to_string(rounds), first_seed));
+    // Seeds of its own for each round: the same start and seed would be the same episode.
+    constexpr int kSeedsOfRound = 10'000;
+    PROBE_TRY(try_out(planned, asking, kind + "/" + std::to_string(rounds),
+                      first_seed + rounds * kSeedsOfRound));
   }
   return {};
 }

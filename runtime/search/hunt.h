@@ -13,6 +13,12 @@
 
 namespace probe::search {
 
+// A case that fails, and what was drawn beside it where a search found it.
+struct Case {
+  std::vector<double> values;
+  std::optional<std::uint64_t> draw;
+};
+
 struct Hunt {
   const SearchOptions& options;
   const BaseTask& base;
@@ -20,7 +26,7 @@ struct Hunt {
   std::unique_ptr<Solved> solved;  // null where nothing is to be proved
   std::string round;               // the folder of the round that is under way
   int rounds = 0;
-  std::vector<double> whole;  // of `minimal`: the case that is made smaller
+  Case whole;  // of `minimal`: what is made smaller
   // What is kept as a text at the end, with a comment for each.
   std::vector<space::Point> kept;
   std::vector<std::string> remarks;
@@ -59,7 +65,7 @@ Status search_boundary(Hunt& hunt);
 Status search_worst(Hunt& hunt);
 Status search_minimal(Hunt& hunt);
 // The case that `minimal` is asked about. Fails (kUsage) where it is none of the space.
-Result<std::vector<double>> case_of(const SearchOptions& options, const sema::Space& space);
+Result<Case> case_of(const SearchOptions& options, const BaseTask& base);
 Status search_axes(Hunt& hunt);
 
 // "light.power 0.3, clutter 2" as values of all axes. Fails (kUsage, where = --at).

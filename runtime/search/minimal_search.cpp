@@ -1,7 +1,9 @@
 // Which changes of a failing case are needed for it to fail.
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
+#include <utility>
 
 #include "runtime/search/hunt.h"
 #include "runtime/search/method/minimal.h"
@@ -30,12 +32,14 @@ std::string_view word_of(Verdict verdict) {
 
 }  // namespace
 
-Result<std::vector<double>> case_of(const SearchOptions& options, const sema::Space& of) {
+Result<Case> case_of(const SearchOptions& options, const BaseTask& base) {
+  const sema::Space& of = base.space();
   if (!options.at.empty()) {
     PROBE_ASSIGN(std::vector<double> values, read_point(of, options.at));
+    values = space::seen_values(of, std::move(values));
     if (space::changed_axes(of, values).empty())
       return no_case("`" + options.at + "` changes nothing", "--at");
-    return values;
+    return Case{std::move(values), {}};
   }
   if (options.from.empty())
     return no_case(
@@ -43,16 +47,35 @@ Result<std::vector<double>> case_of(const SearchOptions& options, const sema::Sp
         "--from");
   PROBE_ASSIGN(const SearchSummary other, read_search(options.from));
   const Json* const cases = other.findings.find("cases");
-  if (cases == nullptr) return no_case("it is no folder of `search worst`", options.from);
+  if (cases == nullptr) return no_case("it has no cases: is it a `search worst`?", options.from);
+  const std::pair<const char*, Json> known[] = {
+      {"task", base.task().name}, {"space", of.name}, {"text_sha256", base.hash()}};
+  for (const auto& [key, value] : known) {
+    const Json& asked = other.findings.at("asked").at(key);
+    if (asked != value)
+      return no_case("it is of another " + std::string(key) + " (" + asked.dump() + ", not " +
+                         value.dump() + ")",
+                     options.from);
+  }
   if (options.number < 1 || static_cast<std::size_t>(options.number) > cases->size())
-    return no_case(fmt::format("it has {} cases, not a {}.", cases->size(), options.number),
-                   "--case");
-  return values_from(of, (*cases)[options.number - 1].at("changes"));
+    return no_case(
+        fmt::format("{} has {} cases, no number {}", options.from, cases->size(), options.number),
+        "--case");
+  const Json& one = (*cases)[options.number - 1];
+  Case found;
+  PROBE_ASSIGN(found.values, values_from(of, one.at("changes")));
+  const std::string draw = one.value("draw", "");
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(draw.data(), draw.data() + draw.size(), number, 16);
+  if (draw.empty() || error != std::errc() || end != draw.data() + draw.size())
+    return no_case("its case lacks what was drawn beside it", options.from);
+  found.draw = number;
+  return found;
 }
 
 Status search_minimal(Hunt& hunt) {
   const sema::Space& space = hunt.space();
-  const std::vector<double>& whole = hunt.whole;
+  const std::vector<double>& whole = hunt.whole.values;
   const std::vector<std::size_t> changed = space::changed_axes(space, whole);
   MinimalOptions options;
   options.axes = static_cast<int>(changed.size());
@@ -66,7 +89,7 @@ Status search_minimal(Hunt& hunt) {
     return values;
   };
   // What is drawn beside a case stays as it is while axes are put back.
-  const std::uint64_t draw = hunt.draw_of(whole);
+  const std::uint64_t draw = hunt.whole.draw.value_or(hunt.draw_of(whole));
   const auto point_with = [&](AxisSet set) {
     return space::Point{hunt.point_name(values_with(set)), values_with(set), draw, {}};
   };
@@ -111,19 +134,29 @@ Status search_minimal(Hunt& hunt) {
       line = "the task fails with nothing changed";
       break;
     case MinimalStatus::kNotReliable:
+      if (!found.tried.empty() && found.tried.front().failures.n == 0) {
+        line = "the case is not fair, so it was not tried: points.csv says why";
+        break;
+      }
       line = "the case does not fail reliably, so nothing can be put back: " +
              of_text(found.tried.empty() ? stats::Count{} : found.tried.front().failures) +
              " trials fail";
       break;
     case MinimalStatus::kBudgetSpent:
-      line = "the budget is spent; what still fails, and may be larger than needed: " + smallest;
       summary.is_done = false;
+      if (found.set == 0) {
+        line = "the budget is spent before it is known whether the case fails reliably";
+        break;
+      }
+      line = "the budget is spent; what still fails, and may be larger than needed: " + smallest;
       break;
     case MinimalStatus::kRunning:
       line = "under way";
       break;
   }
-  summary.lines.push_back(line + fmt::format(" ({} trials)", found.trials));
+  summary.lines.push_back(line + fmt::format(" ({} trials; failing is a rate of {:g} or more, not "
+                                             "failing one of {:g} or less)",
+                                             found.trials, options.fails, options.passes));
   Json tried = Json::array();
   for (const SetTried& one : found.tried) {
     const std::string text = space::point_text(space, values_with(one.set));
@@ -135,7 +168,9 @@ Status search_minimal(Hunt& hunt) {
                      {"verdict", word_of(one.verdict)}});
   }
   summary.findings["case"] = json_of(space, whole);
-  summary.findings["smallest"] = json_of(space, values_with(found.set));
+  if (found.status == MinimalStatus::kFound ||
+      (found.status == MinimalStatus::kBudgetSpent && found.set != 0))
+    summary.findings["smallest"] = json_of(space, values_with(found.set));
   summary.findings["sentence"] = line;
   summary.findings["tried"] = std::move(tried);
   return {};

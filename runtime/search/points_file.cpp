@@ -18,18 +18,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSuite = "points";
 constexpr const char* kFile = "points.probe";
 
 std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-// As a `use` in a file of `folder` says it.
+// As a `use` in a file of `folder` says it. A way up through a link would lead elsewhere.
 std::string use_of(const std::string& file, const std::string& folder) {
-  std::error_code error;
-  const fs::path relative = fs::relative(absolute_path(file), absolute_path(folder), error);
-  return error || relative.empty() ? absolute_path(file) : relative.generic_string();
+  const std::string whole = absolute_path(file);
+  const fs::path from = fs::path(absolute_path(folder));
+  std::string written = fs::path(whole).lexically_relative(from).generic_string();
+  if (written.empty() || !is_same((from / written).string(), whole)) written = whole;
+  std::string text;
+  for (const char c : written) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text;
+}
+
+// A suite's name that the text has not.
+std::string free_suite(const BaseTask& base, const char* what) {
+  std::string name = base.space().name + "_" + what;
+  const auto is_taken = [&] {
+    return std::ranges::any_of(base.model().suites,
+                               [&](const sema::Suite& suite) { return suite.name == name; });
+  };
+  while (is_taken()) name += "_";
+  return name;
 }
 
 // A text of several points, and which lines are whose.
@@ -84,18 +101,25 @@ class Page {
   std::vector<std::string> names_;
 };
 
+// Whether a source is the file at `path`, and not one of that name elsewhere.
+bool is_file_at(const SourceFile& source, const std::string& path) {
+  return absolute_path(source.name()) == absolute_path(path) || is_same(source.name(), path);
+}
+
 // Which points are to blame, with what is said of each first.
 std::map<std::size_t, std::string> blamed(const Compilation& compilation, const Pages& pages,
-                                          const std::string& file) {
+                                          const std::string& folder, const std::string& file,
+                                          bool wants_seen) {
   std::map<std::size_t, std::string> out;
   const auto point_at = [&](const Span& span) -> std::optional<std::size_t> {
     if (span.is_none()) return std::nullopt;
     const SourceFile& source = compilation.sources.file(span.file);
     const std::string name = fs::path(source.name()).filename().string();
-    for (const auto& [table, point] : pages.tables) {
-      if (fs::path(table).filename().string() == name) return point;
-    }
-    if (name != file) return std::nullopt;
+    const auto table = pages.tables.find(name);
+    if (table != pages.tables.end() && is_file_at(source, (fs::path(folder) / name).string()))
+      return table->second;
+    if (name != file || !is_file_at(source, (fs::path(folder) / file).string()))
+      return std::nullopt;
     const std::uint32_t line = source.line_of(span.begin);
     for (std::size_t i = 0; i < pages.lines.size(); ++i) {
       if (line >= pages.lines[i].first && line <= pages.lines[i].second) return i;
@@ -104,7 +128,7 @@ std::map<std::size_t, std::string> blamed(const Compilation& compilation, const 
   };
   for (const Diagnostic& said : compilation.diagnostics.items()) {
     // What is out of the picture is no fair start either.
-    if (said.severity != Severity::kError && said.code != Code::P0505) continue;
+    if (said.severity != Severity::kError && (said.code != Code::P0505 || !wants_seen)) continue;
     std::optional<std::size_t> point = point_at(said.primary);
     for (std::size_t i = 0; i < said.labels.size() && !point; ++i)
       point = point_at(said.labels[i].span);
@@ -172,14 +196,14 @@ class Planner {
       planned[i].starts = written.starts;
       if (!is_there) planned[i].why = written.left_out;
     }
-    PROBE_ASSIGN(const Pages pages, page.finish(kSuite, file));
+    PROBE_ASSIGN(const Pages pages, page.finish(free_suite(base_, "points"), file));
     compile::FilesRequest request{.assets = base_.options().assets,
                                   .library = base_.options().library,
-                                  .suite = kSuite,
+                                  .suite = free_suite(base_, "points"),
                                   .wants_plan = wants_plan};
     PROBE_ASSIGN(Compilation compilation,
                  compile::compile_files({(fs::path(folder_) / file).string()}, request));
-    auto to_blame = blamed(compilation, pages, file);
+    auto to_blame = blamed(compilation, pages, folder_, file, base_.is_seen());
     return Attempt{std::move(compilation), std::move(to_blame)};
   }
 
@@ -191,9 +215,14 @@ class Planner {
     std::vector<std::size_t> of;
     for (const auto& [i, why] : to_blame) {
       planned[i].why = why;
-      const bool moves = planned[i].point.values != space::own_values(base_.space()) &&
-                         space::placed_values(base_.space(), planned[i].point.values) !=
-                             space::own_values(base_.space());
+      // A start may be out of reach, or out of a moved camera's picture.
+      const bool moves = std::ranges::any_of(
+          space::changed_axes(base_.space(), planned[i].point.values), [&](std::size_t axis) {
+            const sema::SpaceAxisKind kind = base_.space().axes[axis].kind;
+            return sema::info_of(kind).moves_things || kind == sema::SpaceAxisKind::kCameraX ||
+                   kind == sema::SpaceAxisKind::kCameraY || kind == sema::SpaceAxisKind::kCameraZ ||
+                   kind == sema::SpaceAxisKind::kCameraTurn;
+          });
       if (!moves || planned[i].starts.size() < 2) {
         alive[i] = false;
         continue;
@@ -213,8 +242,14 @@ class Planner {
       if (attempt.blamed.empty()) break;
       for (const auto& [k, why] : attempt.blamed) is_fair[k] = false;
     }
+    // Where no single start is to blame it is the whole point.
+    std::set<std::size_t> refused;
     for (std::size_t k = 0; k < single.size(); ++k) {
-      if (is_fair[k]) planned[of[k]].point.starts.push_back(single[k].point.starts.front());
+      if (!is_fair[k]) refused.insert(of[k]);
+    }
+    for (std::size_t k = 0; k < single.size(); ++k) {
+      if (is_fair[k] && refused.contains(of[k]))
+        planned[of[k]].point.starts.push_back(single[k].point.starts.front());
     }
     for (const std::size_t i : std::set(of.begin(), of.end()))
       alive[i] = !planned[i].point.starts.empty();
@@ -274,7 +309,7 @@ Status write_found(const BaseTask& base, const std::vector<space::Point>& points
       PROBE_ASSIGN([[maybe_unused]] const bool is_there,
                    page.add(i, points[i], written, "", allowed.contains(i), remarks[i]));
     }
-    PROBE_ASSIGN(const Pages pages, page.finish("found", name));
+    PROBE_ASSIGN(const Pages pages, page.finish(free_suite(base, "found"), name));
     if (round == 1) break;
     PROBE_ASSIGN(const Compilation compilation,
                  compile::compile_files({file}, {.assets = base.options().assets,
@@ -283,7 +318,7 @@ Status write_found(const BaseTask& base, const std::vector<space::Point>& points
     for (const Diagnostic& said : compilation.diagnostics.items()) {
       if (said.code != Code::P0701) continue;
       const SourceFile& source = compilation.sources.file(said.primary.file);
-      if (fs::path(source.name()).filename().string() != name) continue;
+      if (!is_file_at(source, file)) continue;
       const std::uint32_t line = source.line_of(said.primary.begin);
       for (std::size_t i = 0; i < pages.lines.size(); ++i) {
         if (line >= pages.lines[i].first && line <= pages.lines[i].second) allowed.insert(i);

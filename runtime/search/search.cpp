@@ -27,7 +27,7 @@ Status write_json(const std::string& path, const Json& json) {
   return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-// What a folder is begun with; only the budget may grow later.
+// What a folder is begun with; of boundaries and minimal sets the budget may grow later.
 Json asked_of(const SearchOptions& options, const BaseTask& base, const std::string& content,
               const std::vector<double>& whole) {
   Json asked = {{"method", to_text(options.method)},
@@ -40,6 +40,9 @@ Json asked_of(const SearchOptions& options, const BaseTask& base, const std::str
                 {"error", options.error},
                 {"levels", options.levels},
                 {"proved_by_expert", options.proves}};
+  // What is drawn at the start, and how many rounds there are, follows from it.
+  if (options.method == Method::kWorst || options.method == Method::kAxes)
+    asked["budget"] = options.budget ? Json(*options.budget) : Json(nullptr);
   if (options.method == Method::kMinimal) asked["case"] = json_of(base.space(), whole);
   return asked;
 }
@@ -56,7 +59,20 @@ Result<Json> read_json(const std::string& folder) {
                        json.value("version", Json(0)).dump() + ", this program reads " +
                        std::to_string(kVersion) + ")",
                    file_of(folder)};
+  const Json* const asked = json.find("asked");
+  if (asked == nullptr || !asked->is_object())
+    return Failure{Fault::kStore, "it does not say what was asked", file_of(folder)};
   return json;
+}
+
+// Whether a policy's episodes are stored there: before that nothing is bound to what was asked.
+bool has_episodes(const std::string& folder) {
+  const auto rounds = list_folder((fs::path(folder) / "rounds").string());
+  if (!rounds) return false;
+  for (const std::string& round : *rounds) {
+    if (is_folder((fs::path(folder) / "rounds" / round / "policy").string())) return true;
+  }
+  return false;
 }
 
 // The folder is this search's, or none yet.
@@ -68,9 +84,14 @@ Status check_folder(const std::string& folder, const Json& asked) {
     return Failure{Fault::kUsage, "the folder is there and is no search's: choose another", folder};
   }
   PROBE_ASSIGN(const Json there, read_json(folder));
+  if (!has_episodes(folder)) return {};
   for (const auto& [key, value] : asked.items()) {
     const Json* const before = there.at("asked").find(key);
     if (before != nullptr && *before == value) continue;
+    if (key == "text_sha256")
+      return Failure{Fault::kUsage,
+                     "the text has changed since the folder was begun: choose another folder",
+                     folder};
     return Failure{Fault::kUsage,
                    "the folder was begun with another " + key + " (" +
                        (before == nullptr ? "none" : before->dump()) + ", now " + value.dump() +
@@ -90,8 +111,12 @@ Status check_options(const SearchOptions& options) {
     return refused("expected more than 0 % and at most 50 %", "--error");
   if (options.budget && (*options.budget < 1 || *options.budget > 1'000'000))
     return refused("expected 1 to 1,000,000 trials", "--budget");
-  if (options.run.only_success || options.run.live)
-    return refused("a search asks for every outcome, in a world that waits", "--live");
+  if (options.run.shards > 1 &&
+      (options.method == Method::kWorst || options.method == Method::kMinimal))
+    return refused(
+        "what this method asks next depends on all that it asked before: only boundary and "
+        "axes can be shared out; --jobs runs several episodes at once",
+        "--shard");
   return {};
 }
 
@@ -109,12 +134,16 @@ std::optional<Method> method_of(std::string_view word) {
 Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   PROBE_TRY(check_options(options));
   PROBE_ASSIGN(const run::Actor actor, run::choose_actor(options.run));
+  if (actor.traits.recorded)
+    return Failure{Fault::kUsage,
+                   "recorded actions are of episodes that were run, a search runs others",
+                   "--policy"};
   PROBE_ASSIGN(const std::unique_ptr<BaseTask> base, BaseTask::open(options.text, said));
-  std::vector<double> whole;
+  Case whole;
   if (options.method == Method::kMinimal) {
-    PROBE_ASSIGN(whole, case_of(options, base->space()));
+    PROBE_ASSIGN(whole, case_of(options, *base));
   }
-  const Json asked = asked_of(options, *base, actor.traits.content, whole);
+  const Json asked = asked_of(options, *base, actor.traits.content, whole.values);
   PROBE_TRY(check_folder(options.run.out, asked));
   PROBE_TRY(make_lasting_folders(options.run.out));
   SearchSummary summary;
@@ -123,13 +152,21 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
                       {"asked", asked},
                       {"file", absolute_path(options.text.file)},
                       {"done", false}};
-  if (!is_there(file_of(options.run.out)))
+  if (!is_there(file_of(options.run.out)) || !has_episodes(options.run.out))
     PROBE_TRY(write_json(file_of(options.run.out), summary.findings));
   Hunt hunt{options, *base, summary, nullptr, "", 0, std::move(whole), {}, {}};
   constexpr Status (*kSearch[])(Hunt&) = {search_boundary, search_worst, search_minimal,
                                           search_axes};
   PROBE_TRY(kSearch[static_cast<std::size_t>(options.method)](hunt));
   Json& found = summary.findings;
+  if (options.run.shards > 1) {
+    summary.is_done = false;
+    summary.lines = {
+        fmt::format("shard {} of {} has run; `vlaprobe merge` joins the folders, and the same "
+                    "command on what it writes tells what was found",
+                    options.run.shard, options.run.shards)};
+    return summary;
+  }
   found["done"] = summary.is_done;
   found["trials"] = summary.trials;
   found["episodes"] = summary.episodes;
@@ -169,6 +206,8 @@ Result<SearchSummary> read_search(const std::string& folder) {
   summary.left_out = count("left_out");
   const Json* const done = summary.findings.find("done");
   summary.is_done = done != nullptr && done->is_boolean() && done->get<bool>();
+  if (!summary.is_done && summary.findings.find("lines") == nullptr)
+    summary.lines.push_back("not finished: the same `search` command goes on with it");
   if (const Json* const lines = summary.findings.find("lines")) {
     for (const Json& line : *lines) {
       if (line.is_string()) summary.lines.push_back(line.text());

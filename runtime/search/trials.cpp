@@ -41,6 +41,7 @@ std::uint64_t hash_of(std::uint64_t seed, const std::string& kind, const std::st
                                   .finish());
 }
 
+const std::string kExpertFolder = "expert-";
 // One seed: the expert draws nothing.
 constexpr int kExpertSeed = 0;
 
@@ -69,12 +70,49 @@ int Solved::not_attempted() const {
       known_, [](const auto& one) { return one.second == Answer::kNoSkill; }));
 }
 
+// Rows of the expert in the round's plan: what they say of the points there.
+void Solved::keep(const PlannedPoints& planned, const store::ResultRow& row) {
+  const auto task = planned.plan.find_task(row.task);
+  if (!task) return;
+  Question question;
+  question.start = static_cast<std::uint32_t>(row.episode);
+  if (*task != planned.base_task) {
+    const auto point = std::ranges::find(planned.points, task, &PlannedPoint::task);
+    if (point == planned.points.end() ||
+        static_cast<std::size_t>(row.episode) >= point->starts.size())
+      return;
+    question.point = static_cast<std::size_t>(point - planned.points.begin());
+    question.start = point->starts[static_cast<std::size_t>(row.episode)];
+  }
+  const std::optional<bool> success = success_of(row);
+  const bool no_skill = row.invalid && row.invalid->starts_with(store::kNotAttempted);
+  // A world that does not settle as the text says is no fair start either.
+  known_[key_of(planned, question)] = success.value_or(false) ? Answer::kYes
+                                      : no_skill              ? Answer::kNoSkill
+                                                              : Answer::kNo;
+}
+
+Status Solved::begin(const PlannedPoints& planned, const std::string& folder) {
+  folder_ = folder;
+  folders_ = 0;
+  PROBE_ASSIGN(const auto names, list_folder(folder));
+  for (const std::string& name : names) {
+    if (!name.starts_with(kExpertFolder)) continue;
+    const std::string dir = (fs::path(folder) / name).string();
+    PROBE_ASSIGN(const auto record, store::find_run_record(dir));
+    if (!record || record->identity.plan_root != to_hex(planned.plan.root())) continue;
+    PROBE_ASSIGN(const auto rows, store::read_results(dir));
+    for (const store::ResultRow& row : rows) keep(planned, row);
+  }
+  return {};
+}
+
 Status Solved::find_out(const PlannedPoints& planned, std::span<const Question> questions) {
   std::vector<run::EpisodeJob> jobs;
-  std::map<store::EpisodeKey, Key> keys;
+  std::set<Key> asked;
   for (const Question& question : questions) {
     const Key key = key_of(planned, question);
-    if (known_.contains(key)) continue;
+    if (known_.contains(key) || !asked.insert(key).second) continue;
     const bool is_base = question.point == kBase;
     const std::uint32_t task = is_base ? planned.base_task : *planned.points[question.point].task;
     std::size_t index = question.start;
@@ -82,42 +120,22 @@ Status Solved::find_out(const PlannedPoints& planned, std::span<const Question> 
       const auto& starts = planned.points[question.point].starts;
       index = static_cast<std::size_t>(std::ranges::find(starts, question.start) - starts.begin());
     }
-    const run::EpisodeJob job{task, static_cast<std::uint32_t>(index), kExpertSeed};
-    if (keys.emplace(run::key_of(planned.plan, job), key).second) jobs.push_back(job);
+    jobs.push_back({task, static_cast<std::uint32_t>(index), kExpertSeed});
   }
   if (jobs.empty()) return {};
   run::RunOptions options = options_;
   options.policy = "expert";
-  options.out = (fs::path(folder_) / ("expert-" + std::to_string(++folders_))).string();
-  const auto keep = [&](const store::ResultRow& row) {
-    const auto known = keys.find(store::key_of(row));
-    if (known == keys.end()) return;
-    const std::optional<bool> success = success_of(row);
-    const bool no_skill = row.invalid && row.invalid->starts_with(store::kNotAttempted);
-    // A world that does not settle as the text says is no fair start either.
-    known_[known->second] = success.value_or(false) ? Answer::kYes
-                            : no_skill              ? Answer::kNoSkill
-                                                    : Answer::kNo;
-  };
+  do {
+    options.out = (fs::path(folder_) / (kExpertFolder + std::to_string(++folders_))).string();
+  } while (is_there(options.out));
   options.progress = [&](const run::RunProgress& progress) {
-    if (progress.row != nullptr) keep(*progress.row);
+    if (progress.row != nullptr) keep(planned, *progress.row);
   };
   bool is_first = true;
   options.next = [&]() -> Result<std::vector<run::EpisodeJob>> {
     return std::exchange(is_first, false) ? jobs : std::vector<run::EpisodeJob>{};
   };
   options.assets = planned.assets;
-  episodes_ += static_cast<int>(jobs.size());
-  // Those of an earlier call.
-  PROBE_ASSIGN(const auto record, store::find_run_record(options.out));
-  if (record && record->identity.plan_root == to_hex(planned.plan.root())) {
-    PROBE_ASSIGN(const auto rows, store::read_results(options.out));
-    for (const store::ResultRow& row : rows) keep(row);
-    std::erase_if(jobs, [&](const run::EpisodeJob& job) {
-      return known_.contains(keys.at(run::key_of(planned.plan, job)));
-    });
-    if (jobs.empty()) return {};
-  }
   PROBE_ASSIGN([[maybe_unused]] const run::RunSummary summary, run::run(planned.plan, options));
   return {};
 }
@@ -135,6 +153,8 @@ Trials::Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptio
 void Trials::keep(const store::ResultRow& row) {
   if (row.invalid && store::is_open(row)) {
     known_[store::key_of(row)] = std::nullopt;
+    if (row.invalid->starts_with("policy"))
+      lost_ = store::to_text(store::key_of(row)) + ": " + *row.invalid;
     return;
   }
   known_[store::key_of(row)] = success_of(row);
@@ -143,10 +163,16 @@ void Trials::keep(const store::ResultRow& row) {
 Status Trials::read_known() {
   PROBE_ASSIGN(const auto record, store::find_run_record(options_.out));
   if (!record) return {};
+  if (record->identity.plan_root != to_hex(planned_.plan.root()))
+    return Failure{
+        Fault::kUsage,
+        "its episodes are of another plan than the points make now: another build, other "
+        "assets or another expert; choose another folder",
+        options_.out};
   PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
-  // Invalid ones are run again.
+  // What a server or the world spoiled is run again.
   for (const store::ResultRow& row : rows) {
-    if (!row.invalid) keep(row);
+    if (!row.invalid || !store::is_open(row)) keep(row);
   }
   return {};
 }
@@ -169,9 +195,19 @@ Result<std::vector<std::optional<Trials::Place>>> Trials::places_of(std::span<co
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const PlannedPoint* const point = point_of(trials[t]);
     open[t].starts = point == nullptr ? base_starts : point->task ? point->starts : no_starts();
-    if (point != nullptr && point->proof != kBase && !planned_.points[point->proof].task)
-      open[t].starts.clear();
-    if (!open[t].starts.empty()) waiting.push_back(t);
+    if (point != nullptr && point->proof != kBase) {
+      // A camera that is moved may see a start that the task's own does not.
+      const PlannedPoint& proof = planned_.points[point->proof];
+      std::erase_if(open[t].starts, [&](std::uint32_t start) {
+        return !proof.task || std::ranges::find(proof.starts, start) == proof.starts.end();
+      });
+    }
+    // Whose trial it is is told by what it is of, before anything is run for it.
+    const std::string& name = point == nullptr ? base_.task().name : point->point.name;
+    const bool is_mine =
+        shards_ == 1 || static_cast<int>(hash_of(seed_, "shard", name, trials[t].number, 0) %
+                                         static_cast<std::uint64_t>(shards_)) == shard_ - 1;
+    if (!open[t].starts.empty() && is_mine) waiting.push_back(t);
   }
   while (!waiting.empty()) {
     std::vector<Solved::Question> questions;
@@ -206,16 +242,16 @@ Result<std::vector<std::optional<Trials::Place>>> Trials::places_of(std::span<co
     waiting = std::move(again);
   }
   // A policy that draws does another episode each time; one that does not would repeat itself.
-  for (std::optional<Place>& place : places) {
-    if (!place || !draws_) continue;
-    place->seed = first_seed_ + uses_[{place->task, static_cast<std::uint32_t>(place->index)}]++;
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    if (places[t] && draws_) places[t]->seed = first_seed_ + static_cast<int>(trials[t].number);
   }
   return places;
 }
 
 Outcome Trials::outcome_of(const Place& place) const {
   const run::EpisodeJob job{place.task, static_cast<std::uint32_t>(place.index), place.seed};
-  const std::optional<bool> success = known_.at(run::key_of(planned_.plan, job));
+  const auto found = known_.find(run::key_of(planned_.plan, job));
+  const std::optional<bool> success = found == known_.end() ? std::nullopt : found->second;
   if (!success) return Outcome::kLeftOut;
   return *success ? Outcome::kSucceeded : Outcome::kFailed;
 }
@@ -224,9 +260,16 @@ Outcome Trials::outcome_of(const Place& place) const {
 Result<std::vector<run::EpisodeJob>> Trials::advance() {
   while (true) {
     if (!asked_.empty()) {
+      // What a server spoiled is done again by the same command: told as left out, the method would
+      // ask otherwise than it does then.
+      if (!lost_.empty())
+        return Failure{Fault::kPolicy,
+                       "an episode was lost (" + lost_ + "); the same command goes on from here",
+                       options_.policy};
       std::vector<Outcome> outcomes;
       for (const std::optional<Place>& place : asked_) {
         outcomes.push_back(place ? outcome_of(*place) : Outcome::kLeftOut);
+        if (shards_ > 1) continue;  // some are others'
         if (!place) ++unfair_;
         if (place && outcomes.back() == Outcome::kLeftOut) ++invalid_;
       }

@@ -24,15 +24,11 @@ namespace probe::search {
 // once for all points that agree in that.
 class Solved {
  public:
-  // `options`: of a run of the expert into folders below `folder`, each made once.
-  Solved(const BaseTask& base, run::RunOptions options, std::string folder)
-      : base_(base), options_(std::move(options)), folder_(std::move(folder)) {}
-
-  // Where the next folders are made.
-  void into(std::string folder) {
-    folder_ = std::move(folder);
-    folders_ = 0;
-  }
+  // `options`: of runs of the expert, each into a folder of its own.
+  Solved(const BaseTask& base, run::RunOptions options)
+      : base_(base), options_(std::move(options)) {}
+  // A round in `folder`: what the runs there have found is known.
+  Status begin(const PlannedPoints& planned, const std::string& folder);
 
   struct Question {
     std::size_t point = kBase;  // of the plan's points, one that proves others
@@ -43,7 +39,6 @@ class Solved {
   // Of what was found out; nothing where the expert has no skills for it.
   std::optional<bool> is_solved(const PlannedPoints& planned, const Question& question) const;
 
-  int episodes() const { return episodes_; }
   int known() const { return static_cast<int>(known_.size()); }
   int unsolved() const;
   int not_attempted() const;
@@ -53,11 +48,12 @@ class Solved {
   using Key = std::tuple<std::vector<double>, std::uint64_t, std::uint32_t>;
   enum class Answer : std::uint8_t { kYes, kNo, kNoSkill };
   Key key_of(const PlannedPoints& planned, const Question& question) const;
+  void keep(const PlannedPoints& planned, const store::ResultRow& row);
 
   const BaseTask& base_;
   run::RunOptions options_;
   std::string folder_;
-  int folders_ = 0, episodes_ = 0;
+  int folders_ = 0;
   std::map<Key, Answer> known_;
 };
 
@@ -80,6 +76,13 @@ class Trials {
   // nothing is proved, then. `kind` names the draws of starts: another kind draws other ones.
   Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptions options,
          Solved* solved, std::uint64_t seed, std::string kind, int first_seed = 0);
+
+  // This call's share: trials of others are left alone, and what they came to is told as far as it
+  // is known, else as left out. What the method then finds is not to be told.
+  void share(int shard, int shards) {
+    shard_ = shard;
+    shards_ = shards;
+  }
 
   // Until the method is done. Fails as run() does; what was run until then is stored, and the same
   // call goes on.
@@ -110,11 +113,12 @@ class Trials {
   std::uint64_t seed_;
   std::string kind_;
   int first_seed_ = 0;
+  int shard_ = 1, shards_ = 1;
   bool draws_ = false;
   const Asking* asking_ = nullptr;
   std::vector<std::optional<Place>> asked_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses_;  // of a task's start
   std::map<store::EpisodeKey, std::optional<bool>> known_;       // success; none: invalid
+  std::string lost_;  // the last episode that a server spoiled
   int ran_ = 0, unfair_ = 0, invalid_ = 0;
   std::vector<std::string> notes_;
 };

@@ -13,7 +13,9 @@ namespace probe::search {
 namespace {
 
 // Seeds of what confirms: none that the search has had.
-constexpr int kFreshSeeds = 1'000'000;
+constexpr int kFreshSeeds = 100'000'000;
+// Trials behind the rounds: a second look at 15 cases, then 5 of them and the task itself again.
+constexpr int kEndTrials = 15 * 8 + 5 * 40 + 60;
 
 }  // namespace
 
@@ -23,8 +25,15 @@ Status search_worst(Hunt& hunt) {
   WorstOptions options;
   options.seed = hunt.options.seed;
   if (hunt.options.budget) {
-    // A round is points times repeats; a last look and the confirmation take some more.
-    options.rounds = std::max(2, *hunt.options.budget / (options.points * options.repeats));
+    const int round = options.points * options.repeats;
+    if (*hunt.options.budget < kEndTrials + 2 * round)
+      return Failure{
+          Fault::kUsage,
+          fmt::format("`worst` takes {} trials at least: two rounds of {}, and {} to look "
+                      "again and to confirm",
+                      kEndTrials + 2 * round, round, kEndTrials),
+          "--budget"};
+    options.rounds = (*hunt.options.budget - kEndTrials) / round;
   }
   Worst worst(axes, options);
   PROBE_TRY(hunt.try_points({[&] { return worst.done(); }, [&] { return worst.ask(); },
@@ -49,7 +58,8 @@ Status search_worst(Hunt& hunt) {
     std::size_t confirmed = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const ConfirmedCase& one = found.cases[i];
-      const std::vector<double> values = values_of(space, candidates[i].point);
+      const std::vector<double> values =
+          space::seen_values(space, values_of(space, candidates[i].point));
       const std::string changes = space::point_text(space, values);
       std::string line = fmt::format("case {}: {}: fails in {} fresh trials", i + 1, changes,
                                      of_text(one.failures));
@@ -60,6 +70,7 @@ Status search_worst(Hunt& hunt) {
       const space::Point point{hunt.point_name(values), values, hunt.draw_of(values), {}};
       cases.push_back({{"name", point.name},
                        {"changes", json_of(space, values)},
+                       {"draw", fmt::format("{:016x}", point.draw)},
                        {"text", changes},
                        {"distance", candidates[i].distance},
                        {"search_failures", json_of(candidates[i].failures)},
@@ -72,7 +83,10 @@ Status search_worst(Hunt& hunt) {
       ++confirmed;
       hunt.keep(point, line);
     }
-    if (confirmed == 0)
+    if (found.own.n > 0 && found.own.k == found.own.n) {
+      summary.lines = {fmt::format("the task itself fails in {} trials: there is nothing to break",
+                                   of_text(found.own))};
+    } else if (confirmed == 0)
       summary.lines.push_back(
           "no case fails more often than the task itself does, as far as fresh "
           "trials tell");

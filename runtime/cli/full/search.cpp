@@ -13,7 +13,7 @@ namespace probe::cli {
 namespace {
 
 struct SearchArguments {
-  std::string method, file, space, policy, name, out, error = "5%", from, at;
+  std::string method, file, space, policy, name, out, error = "5%", from, at, shard = "1/1";
   int jobs = 1, retries = 2, give_up_after = 5, levels = 41, number = 1;
   std::optional<int> budget;
   std::optional<std::uint32_t> seed;
@@ -66,6 +66,10 @@ int search_verb(const SearchArguments& arguments) {
   options.number = arguments.number;
   options.at = arguments.at;
   options.tell = [](const std::string& what) { say("{}\n", what); };
+  const auto shard = parse_shard(arguments.shard);
+  if (!shard) return report(shard.failure());
+  options.run.shard = shard->first;
+  options.run.shards = shard->second;
   if (options.run.accepts_any_certificate) warn_of_insecure(options.run.policy);
   std::string said;
   const auto found = search::search(options, said);
@@ -112,6 +116,8 @@ void add_search(Verb app, int& exit) {
   verb.add_option("--at", arguments->at, "of minimal: the case, as \"light.power 0.3, clutter 2\"");
   verb.add_flag("--unproved", arguments->unproved,
                 "do not ask the expert whether what is tried can be done");
+  verb.add_option("--shard", arguments->shard,
+                  "I/N: this call's share of a boundary's sides or of the axes' trials");
   verb.add_option("--jobs", arguments->jobs, "worlds in parallel").between(1, 1024);
   verb.add_option("--retries", arguments->retries,
                   "times an episode is tried again that a server spoiled (2)")

@@ -135,6 +135,39 @@ TEST_CASE("more clutter leaves the first of it where it was, and more than are l
   CHECK(many.find("0,p_nut2,") != std::string::npos);
 }
 
+TEST_CASE("numbers of any size are ones that the language reads") {
+  const auto base = space_text(
+      "space around of carrot_on_plate { light ambient 0.00001 .. 0.6, power 0.2 .. 3 }\n");
+  for (const double ambient : {2.7e-5, 1.0 / 3, 0.0056152156819127596, 0.1 + 0.2}) {
+    CAPTURE(ambient);
+    Point point{"p", {ambient, 0.7 / 3}, 3, {}};
+    AnalyzedText text;
+    const auto written = write_point(base->text.model, base->space(), point, "", false);
+    const sema::Task& task = compiled(*base, written, text, "p");
+    CHECK(text.model.lights[task.light].ambient == doctest::Approx(ambient).epsilon(1e-12));
+  }
+}
+
+TEST_CASE(
+    "starts that have heights keep them when things lie around, which have heights of their own") {
+  const auto base = space_text(
+      R"(
+layout high { starts "high.csv"; drop 1cm settle 0.5s }
+variant lifted of carrot_on_plate { layout high }
+space around of lifted { clutter 0 .. 2 from (nut, rabbit) }
+)",
+      {{"high.csv",
+        "start,object,x_m,y_m,z_m\n0,carrot,-0.16,0.075,0.95\n0,plate,-0.16,-0.075,0.90\n"}});
+  Point point{"p", {2}, 3, {}};
+  AnalyzedText text;
+  const auto written = write_point(base->text.model, base->space(), point, "", false);
+  const sema::Task& task = compiled(*base, written, text, "p");
+  REQUIRE(task.starts.size() == 1);
+  REQUIRE(task.starts[0].placed.size() == 4);
+  CHECK(task.starts[0].placed[0].z == 0.95);
+  for (const auto& placed : task.starts[0].placed) CHECK(placed.z.has_value());
+}
+
 TEST_CASE("draws follow from the point alone, so the same point is the same text") {
   const auto base = space_text(kEverything);
   const sema::Space& space = base->space();

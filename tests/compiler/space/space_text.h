@@ -6,6 +6,8 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/analyzed.h"
@@ -33,8 +35,11 @@ inline AnalyzedText analyzed(const std::string& file) {
 }
 
 // `body`: behind `use "suite/intact_clean.probe"`.
-inline std::unique_ptr<SpaceText> space_text(const std::string& body) {
+// `beside`: files that lie beside it.
+inline std::unique_ptr<SpaceText> space_text(
+    const std::string& body, const std::vector<std::pair<std::string, std::string>>& beside = {}) {
   auto made = std::make_unique<SpaceText>();
+  for (const auto& [name, text] : beside) std::ofstream(made->folder / name) << text;
   made->file = made->folder / "mine.probe";
   std::ofstream(made->file) << "use \"" << VLAPROBE_SOURCE_DIR << "/suite/intact_clean.probe\"\n"
                             << body;

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "runtime/base/paths.h"
-#include "runtime/store/results.h"
+#include "runtime/search/merge_searches.h"
 #include "tests/compiler/space/space_text.h"
 #include "tests/runtime/run/temporary_folder.h"
 
@@ -86,7 +86,7 @@ TEST_CASE("a folder that was begun with another policy, text or seed is refused 
   CHECK(search.refused().message.find("another seed (0, now 1)") != std::string::npos);
   search.options.seed = 0;
   std::ofstream(search.text->file, std::ios::app) << "# more\n";
-  CHECK(search.refused().message.find("another text_sha256") != std::string::npos);
+  CHECK(search.refused().message.find("the text has changed") != std::string::npos);
 }
 
 TEST_CASE("a folder that is no search's is left alone, and so is one of another format") {
@@ -97,6 +97,9 @@ TEST_CASE("a folder that is no search's is left alone, and so is one of another 
   std::ofstream(search.options.run.out + "/search.json")
       << R"({"format": "vlaprobe search", "version": 99})";
   CHECK(search.refused().message.find("another version") != std::string::npos);
+  std::ofstream(search.options.run.out + "/search.json")
+      << R"({"format": "vlaprobe search", "version": 1})";
+  CHECK(search.refused().message.find("does not say what was asked") != std::string::npos);
   std::ofstream(search.options.run.out + "/search.json") << "[1, 2";
   CHECK(search.refused().message.find("not what a search wrote") != std::string::npos);
 }
@@ -116,15 +119,15 @@ TEST_CASE(
 
 TEST_CASE("what a case needs to fail is found exactly, and each set that was tried is told") {
   Search search(Method::kMinimal,
-                "light power 0.5 .. 2\nclutter 0 .. 3 from (nut, rabbit)\nwords templates of put",
+                "light power 0.5 .. 2\nclutter 0 .. 3 from (nut, rabbit)\nwords phrases of source",
                 "weak:clutter>=2+reworded");
-  search.options.at = "light.power 0.7, clutter 3, words put_the";
+  search.options.at = "light.power 0.7, clutter 3, phrase.source by_color";
   const SearchSummary found = search.find();
   CAPTURE(found.findings.dump(1));
   const Json& smallest = found.findings.at("smallest");
   CHECK(smallest.size() == 2);
   CHECK(smallest.contains("clutter"));
-  CHECK(smallest.contains("words"));
+  CHECK(smallest.contains("phrase.source"));
   CHECK(found.findings.at("tried").size() >= 4);
 }
 
@@ -143,6 +146,66 @@ TEST_CASE("a point that is asked for by hand is one of the space, or refused wit
   says("light.power 1", "changes nothing");
   search.options.at = "";
   CHECK(search.refused().message.find("--from DIR") != std::string::npos);
+}
+
+TEST_CASE("a suite, a path and a folder of odd names are no hindrance") {
+  Search search(Method::kAxes, "light ambient 0.2 .. 0.4", "null");
+  std::ofstream(search.text->file, std::ios::app)
+      << "suite around_points { tasks { carrot_on_plate }; seeds 0 }\n";
+  const std::string odd = search.text->folder / "q\"d \xc3\xa9";
+  std::filesystem::create_directories(odd);
+  std::filesystem::rename(search.text->file, odd + "/points.probe");
+  std::filesystem::create_directories(search.text->folder / "real/deep");
+  std::filesystem::create_directory_symlink(search.text->folder / "real/deep",
+                                            search.text->folder / "link");
+  search.options.text.file = odd + "/points.probe";
+  search.options.run.out = search.text->folder / "link/search";
+  search.options.budget = 8;
+  const SearchSummary found = search.find();
+  REQUIRE_FALSE(found.lines.empty());
+  CHECK(found.lines.back() == "all that were tried end alike, so there is nothing to compare");
+  // Another budget draws other points.
+  search.options.budget = 9;
+  CHECK(search.refused().message.find("another budget (8, now 9)") != std::string::npos);
+}
+
+TEST_CASE("a task whose camera moves is searched over the starts that stay in its picture") {
+  Search search(Method::kAxes,
+                "camera third_view within (0cm, 0cm, 30cm), 20deg\nplace source in disc 12cm",
+                "null");
+  search.options.budget = 24;
+  const SearchSummary found = search.find();
+  CHECK(found.trials == 24);
+}
+
+TEST_CASE("recorded actions, and a budget that a method cannot do with, are refused") {
+  Search search(Method::kWorst, "light ambient 0.2 .. 0.4", "null");
+  search.options.budget = 100;
+  CHECK(search.refused().message.find("takes 540 trials at least") != std::string::npos);
+}
+
+TEST_CASE("shards of a search that are merged tell what one call tells, and run nothing more") {
+  Search search(Method::kBoundary, "light ambient 0.2 .. 0.4", "null");
+  const SearchSummary whole = search.find();
+  const std::string out = search.options.run.out;
+  store::MergeOptions merging;
+  for (const int shard : {1, 2}) {
+    search.options.run.shard = shard;
+    search.options.run.shards = 2;
+    search.options.run.out = out + "-" + std::to_string(shard);
+    CHECK_FALSE(search.find().is_done);
+    merging.dirs.push_back(search.options.run.out);
+  }
+  search.options.run.shard = search.options.run.shards = 1;
+  search.options.run.out = merging.out = out + "-all";
+  const auto merged = merge_searches(merging);
+  REQUIRE_MESSAGE(merged.ok(), to_text(merged.failure()));
+  const SearchSummary again = search.find();
+  CHECK(again.ran == 0);
+  CHECK(again.lines == whole.lines);
+  search.options.method = Method::kWorst;
+  search.options.run.shards = 2;
+  CHECK(search.refused().where == "--shard");
 }
 
 TEST_CASE("a text without a space, with several, or with mistakes is refused") {
