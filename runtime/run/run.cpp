@@ -263,8 +263,6 @@ Result<std::optional<adaptive::Rule>> rule_to_drop(const RunOptions& options) {
 
 // What a run that stops by itself knows now; whoever follows it is told when no more will come.
 Status sum_up(const std::string& out, RunSummary& summary) {
-  PROBE_ASSIGN(const store::RunRecord record, store::read_run_record(out));
-  if (record.identity.until == store::kBySearch) return {};
   PROBE_ASSIGN(const auto run, adaptive::read_adaptive(out));
   if (!run) return {};
   adaptive::Summarizer sums(*run);
