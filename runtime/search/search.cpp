@@ -61,7 +61,7 @@ Result<Json> read_json(const std::string& folder) {
                    file_of(folder)};
   const Json* const asked = json.find("asked");
   if (asked == nullptr || !asked->is_object())
-    return Failure{Fault::kStore, "it does not say what was asked", file_of(folder)};
+    return Failure{Fault::kStore, "it does not say what was asked (`asked`)", file_of(folder)};
   return json;
 }
 
