@@ -99,10 +99,8 @@ bool check_reach(const TaskStarts& starts, Arms& arms) {
   CountedStarts counted{0, starts.task.starts.size()};
   for (std::size_t e = 0; robot.reach_max != 0 && e < starts.task.starts.size(); ++e) {
     for (const Start::Placed& placed : starts.task.starts[e].placed) {
-      const double dx = placed.x - scene.base_position[0];
-      const double dy = placed.y - scene.base_position[1];
-      const double away = std::sqrt(dx * dx + dy * dy);
-      if (away >= robot.reach_min && away <= robot.reach_max) continue;
+      const double away = distance_to_base(scene, placed);
+      if (is_in_annulus(robot, away)) continue;
       if (first == nullptr) {
         first = &placed;
         first_away = away;

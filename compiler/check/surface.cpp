@@ -15,11 +15,7 @@ bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed) {
   if (placed.x - reach >= area[0] && placed.x + reach <= area[2] && placed.y - reach >= area[1] &&
       placed.y + reach <= area[3])
     return false;
-  const Footprint shape = footprint(starts.object(placed), placed);
-  const double rx = shape.reach_along({1, 0});
-  const double ry = shape.reach_along({0, 1});
-  return !(shape.centre.x - rx >= area[0] && shape.centre.x + rx <= area[2] &&
-           shape.centre.y - ry >= area[1] && shape.centre.y + ry <= area[3]);
+  return !is_inside(footprint(starts.object(placed), placed), area);
 }
 
 bool check_surface(const TaskStarts& starts) {

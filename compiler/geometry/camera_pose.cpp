@@ -15,6 +15,14 @@ Quat looking_along(const std::array<double, 4>& direction) {
 
 }  // namespace
 
+Quat aim_of(const Camera& camera) {
+  const auto& a = camera.aim_values;
+  const Quat aim =
+      camera.aim == plan::CameraAim::kLook ? looking_along(a) : pose_of({}, a).rotation;
+  if (camera.turned == std::array<double, 4>{1, 0, 0, 0}) return aim;
+  return aim * pose_of({}, camera.turned).rotation;
+}
+
 std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Camera& camera) {
   if (scene.robot == RobotId::kNone || camera.broken)
     return std::nullopt;
@@ -31,10 +39,7 @@ std::optional<Pose> camera_pose(const Model& model, const Scene& scene, const Ca
     link = joint.parent_link;
   }
   Pose aim = pose_of(camera.position, {1, 0, 0, 0});
-  const auto& a = camera.aim_values;
-  aim.rotation = camera.aim == plan::CameraAim::kLook ? looking_along(a) : pose_of({}, a).rotation;
-  if (camera.turned != std::array<double, 4>{1, 0, 0, 0})
-    aim.rotation = aim.rotation * pose_of({}, camera.turned).rotation;
+  aim.rotation = aim_of(camera);
   return pose_of(scene.base_position, scene.base_turn.rotation) * mount * aim;
 }
 

@@ -27,6 +27,12 @@ Footprint footprint(const Object& object, const Start::Placed& placed) {
   return result;
 }
 
+bool is_inside(const Footprint& print, const std::array<double, 4>& area) {
+  const double rx = print.reach_along({1, 0}), ry = print.reach_along({0, 1});
+  return print.centre.x - rx >= area[0] && print.centre.x + rx <= area[2] &&
+         print.centre.y - ry >= area[1] && print.centre.y + ry <= area[3];
+}
+
 double reach_of(const Object& object) {
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {

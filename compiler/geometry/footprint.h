@@ -25,6 +25,9 @@ struct Footprint {
 
 Footprint footprint(const Object& object, const Start::Placed& placed);
 
+// Whether all of it lies on an area: least x, least y, most x, most y.
+bool is_inside(const Footprint& print, const std::array<double, 4>& area);
+
 // How far the box reaches from its model's origin, however it is turned, and a little more than
 // rounding takes away (m).
 double reach_of(const Object& object);

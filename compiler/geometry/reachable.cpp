@@ -56,6 +56,16 @@ void keep_least(std::optional<Shortfall>& least, const Shortfall& miss) {
 
 }  // namespace
 
+double distance_to_base(const Scene& scene, const Start::Placed& placed) {
+  const double dx = placed.x - scene.base_position[0];
+  const double dy = placed.y - scene.base_position[1];
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+bool is_in_annulus(const Robot& robot, double distance) {
+  return robot.reach_max == 0 || (distance >= robot.reach_min && distance <= robot.reach_max);
+}
+
 std::optional<Arm> Arm::of(const Model& model, const Scene& scene) {
   if (scene.robot == RobotId::kNone) return std::nullopt;
   const Robot& robot = model.robots[scene.robot];

@@ -15,6 +15,11 @@
 
 namespace probe::sema {
 
+// How far a place lies from the robot's base (m), and whether that is between its least and its
+// most reach; a robot of which neither is said reaches everywhere.
+double distance_to_base(const Scene& scene, const Start::Placed& placed);
+bool is_in_annulus(const Robot& robot, double distance);
+
 // How near the tool comes to a pose that it cannot take.
 struct Shortfall {
   double position = 0;  // m

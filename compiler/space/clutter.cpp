@@ -1,14 +1,15 @@
 #include "compiler/space/clutter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <string>
 
 #include "compiler/define/views.h"
 #include "compiler/geometry/footprint.h"
 #include "compiler/geometry/in_frame.h"
+#include "compiler/geometry/reachable.h"
 #include "compiler/space/draws.h"
+#include "runtime/base/geometry.h"
 #include "runtime/base/trig.h"
 
 namespace probe::space {
@@ -18,12 +19,11 @@ namespace {
 constexpr double kRoom = 0.005;  // m
 constexpr int kTries = 200;
 
+// Turned about the vertical where it rests.
 sema::Turn about_vertical(double angle, const sema::Turn& rest) {
   const SinCos half = portable_sincos(angle / 2);
-  const auto& r = rest.rotation;
-  // (c, 0, 0, s) before the rest turn.
-  return {{half.cos * r[0] - half.sin * r[3], half.cos * r[1] - half.sin * r[2],
-           half.cos * r[2] + half.sin * r[1], half.cos * r[3] + half.sin * r[0]}};
+  const Quat q = Quat(half.cos, 0, 0, half.sin) * to_quat(rest.rotation);
+  return {{q.w(), q.x(), q.y(), q.z()}};
 }
 
 // By a camera that stands still, where there is one: what nobody sees is no clutter.
@@ -33,12 +33,6 @@ bool is_seen(const std::vector<sema::Frustum>& eyes, const sema::Object& object,
            const auto outside = eye.outside(object, placed);
            return outside && *outside == 0;
          });
-}
-
-bool is_inside(const sema::Footprint& print, const std::array<double, 4>& area) {
-  const double x = print.reach_along({1, 0}), y = print.reach_along({0, 1});
-  return print.centre.x - x >= area[0] && print.centre.x + x <= area[2] &&
-         print.centre.y - y >= area[1] && print.centre.y + y <= area[3];
 }
 
 }  // namespace
@@ -72,9 +66,7 @@ std::optional<std::vector<sema::Start::Placed>> lay_clutter(
       const sema::Footprint print = footprint(object, placed);
       if (!is_inside(print, area) || !is_seen(eyes, object, placed)) continue;
       // The compiler wants all that lies around within the arm's reach (P0502).
-      const double far =
-          std::hypot(placed.x - scene.base_position[0], placed.y - scene.base_position[1]);
-      if (far < robot.reach_min || far > robot.reach_max) continue;
+      if (!is_in_annulus(robot, distance_to_base(scene, placed))) continue;
       bool free = true;
       for (const sema::Footprint& other : there) free = free && overlap(print, other) < -kRoom;
       if (!free) continue;

@@ -33,6 +33,8 @@ std::vector<double> placed_values(const sema::Space& space, const std::vector<do
 
 // "0.31", "-2.5cm", "put_the", "as the task"; of a factor "x 0.31".
 std::string value_text(const sema::SpaceAxis& axis, double value);
+// The same of a number in the unit that people read.
+std::string amount_text(const sema::SpaceAxisInfo& info, double shown);
 // "light.power x 0.31, clutter 2"; "nothing" where nothing is changed.
 std::string point_text(const sema::Space& space, const std::vector<double>& values);
 
@@ -49,10 +51,9 @@ struct WrittenPoint {
   std::string left_out = {};
 };
 
-// The point must be one of `space`, whose task has no errors in `model`. `table_folder`: where its
-// table will lie as seen from the text, "" or "points/". `allowed`: whether more than one axis is
-// known to move, which the text then says is meant.
+// The point must be one of `space`, whose task has no errors in `model`. `allowed`: whether more
+// than one axis is known to move, which the text then says is meant.
 WrittenPoint write_point(const sema::Model& model, const sema::Space& space, const Point& point,
-                         const std::string& table_folder, bool allowed);
+                         bool allowed);
 
 }  // namespace probe::space

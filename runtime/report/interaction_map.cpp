@@ -6,6 +6,7 @@
 
 #include "runtime/base/percent.h"
 #include "runtime/report/html_parts.h"
+#include "runtime/search/shown_value.h"
 
 namespace probe::report {
 namespace {
@@ -70,9 +71,10 @@ std::string pairs_in_words(const SearchFindings& found) {
     if (!pair.named) continue;
     out += "<li><b>" + html_text(pair.a) + "</b> and <b>" + html_text(pair.b) + "</b> " +
            (pair.synergy ? "work together" : "undo one another") + ": " + html_text(pair.side_a) +
-           " and " + html_text(pair.side_b) + " fail " + k_of_n(pair.both) +
-           ", one of the two alone " + k_of_n(pair.only_a) + " and " + k_of_n(pair.only_b) +
-           ", neither " + k_of_n(pair.neither) + fmt::format(" (p = {:.2g}).</li>", pair.p);
+           " and " + html_text(pair.side_b) + " fail " + search::k_of_n(pair.both) +
+           ", one of the two alone " + search::k_of_n(pair.only_a) + " and " +
+           search::k_of_n(pair.only_b) + ", neither " + search::k_of_n(pair.neither) +
+           fmt::format(" (p = {:.2g}).</li>", pair.p);
   }
   if (out.empty())
     return "<p>No two axes are found to matter together, which does not say that none do.</p>\n";
@@ -87,8 +89,8 @@ std::string axes_table(const SearchFindings& found) {
         {{html_name(axis.axis)},
          {axis.matters ? "<b>matters</b>" : "<span class=\"none\">no effect shown</span>"},
          {axis.matters ? html_text(axis.side) : ""},
-         {axis.matters ? k_of_n(axis.there) : "", true},
-         {axis.matters ? k_of_n(axis.elsewhere) : "", true},
+         {axis.matters ? search::k_of_n(axis.there) : "", true},
+         {axis.matters ? search::k_of_n(axis.elsewhere) : "", true},
          {fmt::format("{:.2g}", axis.p), true},
          {percent_of_share(axis.first) + " <small>" +
               percent_range(axis.first_interval.low, axis.first_interval.high, " to ") + "</small>",
@@ -110,7 +112,7 @@ std::string total_text(const AxisShare& axis) {
 }
 
 std::string interaction_map(const SearchFindings& found) {
-  std::string out = "<p class=\"lead\">" + k_of_n(found.failures) +
+  std::string out = "<p class=\"lead\">" + search::k_of_n(found.failures) +
                     " trials, drawn over the whole space, fail. On the diagonal: what of that an "
                     "axis explains by itself, and where it fails if it matters. Below it: pairs "
                     "that are named, with the sides at which they are told best; a dot is a pair "

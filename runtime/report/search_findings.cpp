@@ -204,8 +204,6 @@ void read_method(KeyReader& read, SearchFindings& out) {
 
 }  // namespace
 
-std::string k_of_n(const stats::Count& count) { return fmt::format("{} of {}", count.k, count.n); }
-
 std::string Tolerance::text_of(double value) const { return search::shown_text(axis, unit, value); }
 
 std::string Tolerance::interval() const {
@@ -223,10 +221,6 @@ std::string Tolerance::in_words() const {
   if (status == "undecided") return near ? "undecided: " + interval() : "undecided";
   if (status == "left out") return "nothing but the task itself is fair";
   return status;
-}
-
-bool is_search(const std::string& folder) {
-  return is_file((fs::path(folder) / "search.json").string());
 }
 
 Result<SearchFindings> read_findings(const std::string& folder) {

@@ -13,9 +13,6 @@
 
 namespace probe::report {
 
-// "12 of 40".
-std::string k_of_n(const stats::Count& count);
-
 // Of a boundary: one way along one axis. Values are in `unit`.
 struct Tolerance {
   std::string axis, side, status, unit, sentence;
@@ -92,7 +89,6 @@ struct SearchFindings {
 };
 
 // Whether the folder is a search's: it has a search.json.
-bool is_search(const std::string& folder);
 
 // Fails (kStore, where = the file) on what is no search's, naming the key that is missing or of
 // another kind.

@@ -13,6 +13,8 @@
 #include "runtime/report/interaction_map.h"
 #include "runtime/report/page_template.h"
 #include "runtime/report/tolerance_chart.h"
+#include "runtime/search/search.h"
+#include "runtime/search/shown_value.h"
 #include "runtime/wire/base64.h"
 
 namespace probe::report {
@@ -93,12 +95,12 @@ std::string worst_part(std::span<const SearchFindings> all, const SearchFindings
   }
   out += "<div class=\"founds\">";
   out += case_card("the task itself", "nothing is changed", drawn.base,
-                   "fails in <b>" + k_of_n(one.own_failures) + "</b> trials");
+                   "fails in <b>" + search::k_of_n(one.own_failures) + "</b> trials");
   for (std::size_t i = 0; i < one.cases.size(); ++i) {
     const WorstCase& found = one.cases[i];
     if (!found.confirmed) continue;
     out += case_card(fmt::format("case {}", i + 1), found.text, drawn.cases[i],
-                     "fails in <b>" + k_of_n(found.failures) + "</b> fresh trials, in <b>" +
+                     "fails in <b>" + search::k_of_n(found.failures) + "</b> fresh trials, in <b>" +
                          bound_text(found.at_least) + "</b> or more of all");
   }
   out += "</div>\n";
@@ -123,7 +125,7 @@ std::string minimal_part(std::span<const SearchFindings> all, const SearchFindin
   for (const TriedSet& set : one.tried) {
     const bool fails = set.verdict == "fails";
     rows.push_back({{html_name(set.text)},
-                    {k_of_n(set.failures), true},
+                    {search::k_of_n(set.failures), true},
                     {"<span class=\"" + std::string(fails ? "fails" : "none") + "\">" +
                      html_text(set.verdict) + "</span>"}});
   }
@@ -242,20 +244,20 @@ std::string findings_part(std::span<const SearchFindings> all) {
     }
     for (const WorstCase& found : one.cases) {
       if (found.confirmed)
-        lines.push_back(found.text + ": fails in " + k_of_n(found.failures) + " fresh trials, in " +
-                        bound_text(found.at_least) + " or more of all");
+        lines.push_back(found.text + ": fails in " + search::k_of_n(found.failures) +
+                        " fresh trials, in " + bound_text(found.at_least) + " or more of all");
     }
     if (!one.sentence.empty()) lines.push_back(one.sentence);
     for (const AxisShare& axis : one.axes) {
       if (axis.matters)
-        lines.push_back(axis.axis + " matters: " + axis.side + " " + k_of_n(axis.there) +
-                        " fail, elsewhere " + k_of_n(axis.elsewhere));
+        lines.push_back(axis.axis + " matters: " + axis.side + " " + search::k_of_n(axis.there) +
+                        " fail, elsewhere " + search::k_of_n(axis.elsewhere));
     }
     for (const PairShare& pair : one.pairs) {
       if (pair.named)
-        lines.push_back(pair.a + " and " + pair.b +
-                        (pair.synergy ? " work together" : " undo one another") + ": " +
-                        pair.side_a + " and " + pair.side_b + " " + k_of_n(pair.both) + " fail");
+        lines.push_back(
+            pair.a + " and " + pair.b + (pair.synergy ? " work together" : " undo one another") +
+            ": " + pair.side_a + " and " + pair.side_b + " " + search::k_of_n(pair.both) + " fail");
     }
     if (lines.empty()) lines.emplace_back("nothing that breaks it was found");
     out += "<li><b>" + html_name(policy_label(all, one)) + "</b> <span class=\"none\">" +
@@ -272,9 +274,9 @@ std::string findings_part(std::span<const SearchFindings> all) {
 }  // namespace
 
 Result<bool> are_searches(const std::vector<std::string>& dirs) {
-  const auto search = std::ranges::find_if(dirs, is_search);
+  const auto search = std::ranges::find_if(dirs, search::is_search);
   if (search == dirs.end()) return false;
-  const auto other = std::ranges::find_if_not(dirs, is_search);
+  const auto other = std::ranges::find_if_not(dirs, search::is_search);
   if (other == dirs.end()) return true;
   return Failure{Fault::kUsage,
                  "`" + *search + "` is a search's folder, `" + *other +

@@ -43,7 +43,7 @@ Status search_axes(Hunt& hunt) {
   const AxesFinding found = axes.finding();
   SearchSummary& summary = hunt.summary;
   summary.lines.push_back(
-      fmt::format("{} of points drawn over the whole space fail", of_text(found.failures)));
+      fmt::format("{} of points drawn over the whole space fail", k_of_n(found.failures)));
   if (found.left_out > 0)
     summary.lines.push_back(
         fmt::format("{} more were left out, so what is said is of the fair part of the space "
@@ -64,7 +64,7 @@ Status search_axes(Hunt& hunt) {
     std::string line = space.axes[i].name + ": ";
     line += one.matters
                 ? fmt::format("matters; {} it fails {}, elsewhere {}", text_of(space, i, one.side),
-                              of_text(one.there), of_text(one.elsewhere))
+                              k_of_n(one.there), k_of_n(one.elsewhere))
                 : "no effect that these trials would show";
     line += fmt::format(
         " (explains {:.0f} %, {:.0f} to {:.0f}; with its pairs at least {:.0f} %; p = {:.2g})",
@@ -91,8 +91,8 @@ Status search_axes(Hunt& hunt) {
           "{:.2g})",
           space.axes[one.a].name, space.axes[one.b].name,
           one.synergy ? "work together" : "undo one another", text_of(space, one.a, one.side_a),
-          text_of(space, one.b, one.side_b), of_text(one.both), of_text(one.only_a),
-          of_text(one.only_b), of_text(one.neither), one.p);
+          text_of(space, one.b, one.side_b), k_of_n(one.both), k_of_n(one.only_a),
+          k_of_n(one.only_b), k_of_n(one.neither), one.p);
       summary.lines.push_back(line);
     }
     pairs.push_back({{"a", space.axes[one.a].name},

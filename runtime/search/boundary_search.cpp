@@ -161,7 +161,7 @@ class BoundarySearch {
       switch (found.status) {
         case BoundaryStatus::kFound:
           line += fmt::format("success falls to half of what it is unchanged ({}) at {} ({}, {})",
-                              of_text(found.own), text_at(found.threshold),
+                              k_of_n(found.own), text_at(found.threshold),
                               interval_text(side, found), trials);
           break;
         case BoundaryStatus::kNoFall:
@@ -169,7 +169,7 @@ class BoundarySearch {
           break;
         case BoundaryStatus::kFailsAtOwnValue:
           line += fmt::format("nothing to fall from: {} succeed where nothing is changed",
-                              of_text(found.own));
+                              k_of_n(found.own));
           break;
         case BoundaryStatus::kNotMonotone:
           line += fmt::format(

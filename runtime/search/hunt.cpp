@@ -56,7 +56,6 @@ Status Hunt::try_points(const PointMethod& method, const std::string& kind, int 
     std::map<std::vector<double>, std::size_t> index;
     std::map<std::size_t, std::uint64_t> numbers;
     std::vector<Trial> trials;
-    const std::vector<double> own = space::own_values(space());
     for (const Point& point : asked) {
       const std::vector<double> values = space::seen_values(space(), values_of(space(), point));
       std::size_t at = kBase;
@@ -102,8 +101,6 @@ void Hunt::keep(space::Point point, const std::string& remark) {
   kept.push_back(std::move(point));
   remarks.push_back("# " + remark + "\n");
 }
-
-std::string of_text(const stats::Count& count) { return fmt::format("{} of {}", count.k, count.n); }
 
 Json json_of(const stats::Count& count) { return {count.k, count.n}; }
 Json json_of(const stats::Interval& interval) { return {interval.low, interval.high}; }

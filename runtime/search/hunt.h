@@ -8,6 +8,7 @@
 
 #include "runtime/search/method/space.h"
 #include "runtime/search/search.h"
+#include "runtime/search/shown_value.h"
 #include "runtime/search/trials.h"
 #include "runtime/stats/intervals.h"
 
@@ -54,8 +55,6 @@ struct Hunt {
   void keep(space::Point point, const std::string& remark);
 };
 
-// "12 of 40".
-std::string of_text(const stats::Count& count);
 Json json_of(const stats::Count& count);
 Json json_of(const stats::Interval& interval);
 // By axis, what is changed: {"light.power": 0.31, "words": "drop_on"}.

@@ -46,8 +46,6 @@ Status copy_texts(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-bool is_search(const std::string& folder) { return is_file(in(folder, "search.json")); }
-
 Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
   PROBE_ASSIGN(const SearchSummary first, read_search(options.dirs.front()));
   for (const std::string& dir : options.dirs) {

@@ -9,8 +9,6 @@
 
 namespace probe::search {
 
-bool is_search(const std::string& folder);
-
 // In: folders of one search, another shard each. Out: `out` with their rounds, their episodes and
 // what the expert solved. What was found is told by the same `search` command on `out`, which runs
 // what is missing. Fails (kUsage) where the folders were begun with different things, and as

@@ -139,7 +139,7 @@ Status search_minimal(Hunt& hunt) {
         break;
       }
       line = "the case does not fail reliably, so nothing can be put back: " +
-             of_text(found.tried.empty() ? stats::Count{} : found.tried.front().failures) +
+             k_of_n(found.tried.empty() ? stats::Count{} : found.tried.front().failures) +
              " trials fail";
       break;
     case MinimalStatus::kBudgetSpent:
@@ -161,7 +161,7 @@ Status search_minimal(Hunt& hunt) {
   for (const SetTried& one : found.tried) {
     const std::string text = space::point_text(space, values_with(one.set));
     summary.lines.push_back(
-        fmt::format("  {}: {} trials fail, {}", text, of_text(one.failures), word_of(one.verdict)));
+        fmt::format("  {}: {} trials fail, {}", text, k_of_n(one.failures), word_of(one.verdict)));
     tried.push_back({{"changes", json_of(space, values_with(one.set))},
                      {"text", text},
                      {"failures", json_of(one.failures)},

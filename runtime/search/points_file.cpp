@@ -20,10 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFile = "points.probe";
 
-std::span<const std::byte> bytes_of(const std::string& text) {
-  return std::as_bytes(std::span(text.data(), text.size()));
-}
-
 // As a `use` in a file of `folder` says it. A way up through a link would lead elsewhere.
 std::string use_of(const std::string& file, const std::string& folder) {
   const std::string whole = absolute_path(file);
@@ -51,9 +47,12 @@ std::string free_suite(const BaseTask& base, const char* what) {
 
 // A text of several points, and which lines are whose.
 struct Pages {
-  std::string text;
+  std::string file, text;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> lines;  // by point, from 1, both included
   std::map<std::string, std::size_t> tables;                   // file to point
+
+  // Whose lines or table it lies in; nothing elsewhere.
+  std::optional<std::size_t> point_at(const SourceSet& sources, const Span& span) const;
 };
 
 class Page {
@@ -66,8 +65,8 @@ class Page {
 
   // The point's lines and its table; false, with the reason in `written`, where it has none.
   Result<bool> add(std::size_t index, const space::Point& point, space::WrittenPoint& written,
-                   const std::string& tables, bool allowed, const std::string& remark = {}) {
-    written = space::write_point(base_.model(), base_.space(), point, tables, allowed);
+                   bool allowed, const std::string& remark = {}) {
+    written = space::write_point(base_.model(), base_.space(), point, allowed);
     if (!written.left_out.empty()) return false;
     if (pages_.lines.size() <= index) pages_.lines.resize(index + 1);
     std::string text = remark;
@@ -78,9 +77,9 @@ class Page {
     pages_.text += text;
     names_.push_back(point.name);
     if (written.table) {
-      PROBE_TRY(write_file((fs::path(folder_) / written.table->file).string(),
-                           bytes_of(written.table->text)));
-      pages_.tables[written.table->file] = index;
+      const std::string table = (fs::path(folder_) / written.table->file).string();
+      PROBE_TRY(write_file(table, std::as_bytes(std::span(written.table->text))));
+      pages_.tables[table] = index;
     }
     return true;
   }
@@ -89,7 +88,8 @@ class Page {
     pages_.text += "\nsuite " + suite + " { tasks { " + base_.task().name;
     for (const std::string& name : names_) pages_.text += ", " + name;
     pages_.text += " }; seeds 0 }\n";
-    PROBE_TRY(write_file((fs::path(folder_) / file).string(), bytes_of(pages_.text)));
+    pages_.file = (fs::path(folder_) / file).string();
+    PROBE_TRY(write_file(pages_.file, std::as_bytes(std::span(pages_.text))));
     return pages_;
   }
 
@@ -106,26 +106,27 @@ bool is_file_at(const SourceFile& source, const std::string& path) {
   return absolute_path(source.name()) == absolute_path(path) || is_same(source.name(), path);
 }
 
-// Which points are to blame, with what is said of each first.
-std::map<std::size_t, std::string> blamed(const Compilation& compilation, const Pages& pages,
-                                          const std::string& folder, const std::string& file,
-                                          bool wants_seen) {
-  std::map<std::size_t, std::string> out;
-  const auto point_at = [&](const Span& span) -> std::optional<std::size_t> {
-    if (span.is_none()) return std::nullopt;
-    const SourceFile& source = compilation.sources.file(span.file);
-    const std::string name = fs::path(source.name()).filename().string();
-    const auto table = pages.tables.find(name);
-    if (table != pages.tables.end() && is_file_at(source, (fs::path(folder) / name).string()))
-      return table->second;
-    if (name != file || !is_file_at(source, (fs::path(folder) / file).string()))
-      return std::nullopt;
+std::optional<std::size_t> Pages::point_at(const SourceSet& sources, const Span& span) const {
+  if (span.is_none()) return std::nullopt;
+  const SourceFile& source = sources.file(span.file);
+  if (is_file_at(source, file)) {
     const std::uint32_t line = source.line_of(span.begin);
-    for (std::size_t i = 0; i < pages.lines.size(); ++i) {
-      if (line >= pages.lines[i].first && line <= pages.lines[i].second) return i;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      if (line >= lines[i].first && line <= lines[i].second) return i;
     }
     return std::nullopt;
-  };
+  }
+  const auto table =
+      tables.find((fs::path(file).parent_path() / fs::path(source.name()).filename()).string());
+  if (table == tables.end() || !is_file_at(source, table->first)) return std::nullopt;
+  return table->second;
+}
+
+// Which points are to blame, with what is said of each first.
+std::map<std::size_t, std::string> blamed(const Compilation& compilation, const Pages& pages,
+                                          bool wants_seen) {
+  std::map<std::size_t, std::string> out;
+  const auto point_at = [&](const Span& span) { return pages.point_at(compilation.sources, span); };
   for (const Diagnostic& said : compilation.diagnostics.items()) {
     // What is out of the picture is no fair start either.
     if (said.severity != Severity::kError && (said.code != Code::P0505 || !wants_seen)) continue;
@@ -191,19 +192,19 @@ class Planner {
     for (std::size_t i = 0; i < planned.size(); ++i) {
       if (!alive[i]) continue;
       space::WrittenPoint written;
-      PROBE_ASSIGN(const bool is_there, page.add(i, planned[i].point, written, "", false));
+      PROBE_ASSIGN(const bool is_there, page.add(i, planned[i].point, written, false));
       alive[i] = is_there;
       planned[i].starts = written.starts;
       if (!is_there) planned[i].why = written.left_out;
     }
-    PROBE_ASSIGN(const Pages pages, page.finish(free_suite(base_, "points"), file));
-    compile::FilesRequest request{.assets = base_.options().assets,
-                                  .library = base_.options().library,
-                                  .suite = free_suite(base_, "points"),
-                                  .wants_plan = wants_plan};
+    const std::string suite = free_suite(base_, "points");
+    PROBE_ASSIGN(const Pages pages, page.finish(suite, file));
     PROBE_ASSIGN(Compilation compilation,
-                 compile::compile_files({(fs::path(folder_) / file).string()}, request));
-    auto to_blame = blamed(compilation, pages, folder_, file, base_.is_seen());
+                 compile::compile_files({pages.file}, {.assets = base_.options().assets,
+                                                       .library = base_.options().library,
+                                                       .suite = suite,
+                                                       .wants_plan = wants_plan}));
+    auto to_blame = blamed(compilation, pages, base_.is_seen());
     return Attempt{std::move(compilation), std::move(to_blame)};
   }
 
@@ -280,7 +281,8 @@ class Planner {
         table += "," + csv_cell(space::value_text(base_.space().axes[i], one.point.values[i]));
       table += "," + std::to_string(one.starts.size()) + "," + csv_cell(one.why) + "\n";
     }
-    PROBE_TRY(write_file((fs::path(folder_) / "points.csv").string(), bytes_of(table)));
+    PROBE_TRY(
+        write_file((fs::path(folder_) / "points.csv").string(), std::as_bytes(std::span(table))));
     return out;
   }
 
@@ -307,7 +309,7 @@ Status write_found(const BaseTask& base, const std::vector<space::Point>& points
     for (std::size_t i = 0; i < points.size(); ++i) {
       space::WrittenPoint written;
       PROBE_ASSIGN([[maybe_unused]] const bool is_there,
-                   page.add(i, points[i], written, "", allowed.contains(i), remarks[i]));
+                   page.add(i, points[i], written, allowed.contains(i), remarks[i]));
     }
     PROBE_ASSIGN(const Pages pages, page.finish(free_suite(base, "found"), name));
     if (round == 1) break;
@@ -317,12 +319,8 @@ Status write_found(const BaseTask& base, const std::vector<space::Point>& points
                                                  .wants_plan = false}));
     for (const Diagnostic& said : compilation.diagnostics.items()) {
       if (said.code != Code::P0701) continue;
-      const SourceFile& source = compilation.sources.file(said.primary.file);
-      if (!is_file_at(source, file)) continue;
-      const std::uint32_t line = source.line_of(said.primary.begin);
-      for (std::size_t i = 0; i < pages.lines.size(); ++i) {
-        if (line >= pages.lines[i].first && line <= pages.lines[i].second) allowed.insert(i);
-      }
+      const auto point = pages.point_at(compilation.sources, said.primary);
+      if (point) allowed.insert(*point);
     }
   }
   return {};

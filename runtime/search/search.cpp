@@ -194,6 +194,8 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   return summary;
 }
 
+bool is_search(const std::string& folder) { return is_file(file_of(folder)); }
+
 Result<SearchSummary> read_search(const std::string& folder) {
   SearchSummary summary;
   PROBE_ASSIGN(summary.findings, read_json(folder));

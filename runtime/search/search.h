@@ -52,6 +52,8 @@ struct SearchSummary {
 // where another ended, with what is stored.
 Result<SearchSummary> search(const SearchOptions& options, std::string& said);
 
+// Whether the folder is one of a search.
+bool is_search(const std::string& folder);
 // What a folder's search has found so far. Fails (kStore) where there is none.
 Result<SearchSummary> read_search(const std::string& folder);
 

@@ -5,7 +5,12 @@
 #include <string>
 #include <string_view>
 
+#include "runtime/stats/intervals.h"
+
 namespace probe::search {
+
+// "12 of 40".
+std::string k_of_n(const stats::Count& count);
 
 // "0.31", "-2.5cm", "x 0.31", "3 steps": as space::value_text writes the same value.
 std::string shown_text(std::string_view axis, std::string_view unit, double value);

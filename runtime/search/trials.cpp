@@ -151,13 +151,9 @@ Trials::Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptio
       first_seed_(first_seed) {}
 
 void Trials::keep(const store::ResultRow& row) {
-  if (row.invalid && store::is_open(row)) {
-    known_[store::key_of(row)] = std::nullopt;
-    if (row.invalid->starts_with("policy"))
-      lost_ = store::to_text(store::key_of(row)) + ": " + *row.invalid;
-    return;
-  }
   known_[store::key_of(row)] = success_of(row);
+  if (store::is_open(row) && row.invalid->starts_with("policy"))
+    lost_ = store::to_text(store::key_of(row)) + ": " + *row.invalid;
 }
 
 Status Trials::read_known() {
@@ -172,7 +168,7 @@ Status Trials::read_known() {
   PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
   // What a server or the world spoiled is run again.
   for (const store::ResultRow& row : rows) {
-    if (!row.invalid || !store::is_open(row)) keep(row);
+    if (!store::is_open(row)) keep(row);
   }
   return {};
 }

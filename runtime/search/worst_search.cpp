@@ -62,9 +62,9 @@ Status search_worst(Hunt& hunt) {
           space::seen_values(space, values_of(space, candidates[i].point));
       const std::string changes = space::point_text(space, values);
       std::string line = fmt::format("case {}: {}: fails in {} fresh trials", i + 1, changes,
-                                     of_text(one.failures));
+                                     k_of_n(one.failures));
       line += one.confirmed ? fmt::format(", in {:.0f} % or more of all (the task itself: {})",
-                                          std::floor(100 * one.low), of_text(found.own))
+                                          std::floor(100 * one.low), k_of_n(found.own))
                             : ", which is not confirmed: the best of many is lucky";
       summary.lines.push_back(line);
       const space::Point point{hunt.point_name(values), values, hunt.draw_of(values), {}};
@@ -85,7 +85,7 @@ Status search_worst(Hunt& hunt) {
     }
     if (found.own.n > 0 && found.own.k == found.own.n) {
       summary.lines = {fmt::format("the task itself fails in {} trials: there is nothing to break",
-                                   of_text(found.own))};
+                                   k_of_n(found.own))};
     } else if (confirmed == 0)
       summary.lines.push_back(
           "no case fails more often than the task itself does, as far as fresh "

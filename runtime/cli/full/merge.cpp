@@ -8,6 +8,7 @@
 #include "runtime/ask/merge.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/search/merge_searches.h"
+#include "runtime/search/search.h"
 
 namespace probe::cli {
 namespace {

@@ -181,3 +181,13 @@ TEST_CASE("an arm of too few joints for any place is not asked") {
   REQUIRE(scenes.size() == 1);
   CHECK_FALSE(sema::Arm::of(a->model, scenes[scenes.id(0)]).has_value());
 }
+
+TEST_CASE("a robot of which no reach is said is near enough everywhere") {
+  sema::Robot robot;
+  CHECK(sema::is_in_annulus(robot, 9));
+  robot.reach_min = 0.1;
+  robot.reach_max = 0.5;
+  CHECK(sema::is_in_annulus(robot, 0.3));
+  CHECK_FALSE(sema::is_in_annulus(robot, 0.05));
+  CHECK_FALSE(sema::is_in_annulus(robot, 9));
+}

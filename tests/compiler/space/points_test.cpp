@@ -68,7 +68,7 @@ TEST_CASE("every axis of a space alone moves the axis of plans that it stands fo
     Point point{std::string("p"), own_values(space), 7, {}};
     for (char& c : point.name) c = 'p';
     point.values[axis_called(space, moved.axis)] = moved.value;
-    const WrittenPoint written = write_point(base->text.model, space, point, "", false);
+    const WrittenPoint written = write_point(base->text.model, space, point, false);
     REQUIRE(written.left_out.empty());
     INFO(written.text);
     AnalyzedText text;
@@ -100,7 +100,7 @@ TEST_CASE("what is moved lies as far from its start as the point says, in each a
   const sema::Space& space = base->space();
   Point point{"p", own_values(space), 7, {}};
   point.values[axis_called(space, "place.source")] = 0.015;
-  const WrittenPoint written = write_point(base->text.model, space, point, "", false);
+  const WrittenPoint written = write_point(base->text.model, space, point, false);
   AnalyzedText text;
   const sema::Task& moved = compiled(*base, written, text, "p");
   const sema::Task& own = base->text.model.tasks[space.of];
@@ -127,7 +127,7 @@ TEST_CASE("more clutter leaves the first of it where it was, and more than are l
   for (const auto& [count, to] : {std::pair(1.0, &few), std::pair(3.0, &many)}) {
     Point point{"p", own_values(space), 7, {0}};
     point.values[clutter] = count;
-    const WrittenPoint written = write_point(base->text.model, space, point, "", false);
+    const WrittenPoint written = write_point(base->text.model, space, point, false);
     REQUIRE(written.table);
     *to = written.table->text;
   }
@@ -142,7 +142,7 @@ TEST_CASE("numbers of any size are ones that the language reads") {
     CAPTURE(ambient);
     Point point{"p", {ambient, 0.7 / 3}, 3, {}};
     AnalyzedText text;
-    const auto written = write_point(base->text.model, base->space(), point, "", false);
+    const auto written = write_point(base->text.model, base->space(), point, false);
     const sema::Task& task = compiled(*base, written, text, "p");
     CHECK(text.model.lights[task.light].ambient == doctest::Approx(ambient).epsilon(1e-12));
   }
@@ -160,7 +160,7 @@ space around of lifted { clutter 0 .. 2 from (nut, rabbit) }
         "start,object,x_m,y_m,z_m\n0,carrot,-0.16,0.075,0.95\n0,plate,-0.16,-0.075,0.90\n"}});
   Point point{"p", {2}, 3, {}};
   AnalyzedText text;
-  const auto written = write_point(base->text.model, base->space(), point, "", false);
+  const auto written = write_point(base->text.model, base->space(), point, false);
   const sema::Task& task = compiled(*base, written, text, "p");
   REQUIRE(task.starts.size() == 1);
   REQUIRE(task.starts[0].placed.size() == 4);
@@ -174,10 +174,10 @@ TEST_CASE("draws follow from the point alone, so the same point is the same text
   Point point{"p", own_values(space), 11, {}};
   point.values[axis_called(space, "light.direction")] = 0.4;
   point.values[axis_called(space, "camera.third_view.turn")] = 0.1;
-  const auto once = write_point(base->text.model, space, point, "", false);
-  CHECK(once.text == write_point(base->text.model, space, point, "", false).text);
+  const auto once = write_point(base->text.model, space, point, false);
+  CHECK(once.text == write_point(base->text.model, space, point, false).text);
   point.draw = 12;
-  CHECK(once.text != write_point(base->text.model, space, point, "", false).text);
+  CHECK(once.text != write_point(base->text.model, space, point, false).text);
 }
 
 TEST_CASE("lamps of a light that lights corners keep all that they have") {
@@ -195,7 +195,7 @@ space around of lit { light power 0.5 .. 2 }
 )");
   Point point{"p", {0.5}, 3, {}};
   AnalyzedText text;
-  const auto written = write_point(base->text.model, base->space(), point, "", false);
+  const auto written = write_point(base->text.model, base->space(), point, false);
   INFO(written.text);
   const sema::Task& task = compiled(*base, written, text, "p");
   const sema::Light& own = *std::ranges::find(base->text.model.lights, "lamps", &sema::Light::name);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "runtime/search/search.h"
 #include "tests/runtime/report/fake_searches.h"
 
 using namespace probe;
@@ -96,7 +97,7 @@ TEST_CASE("a file that no search wrote is refused with the key that is wrong") {
 TEST_CASE("a folder is a search's by its search.json") {
   const FakeSearches box;
   const std::string dir = box.add("b", boundary_json("pi0", 0.1));
-  CHECK(is_search(dir));
-  CHECK_FALSE(is_search(dir + "/rounds"));
-  CHECK_FALSE(is_search(dir + "/no/such"));
+  CHECK(search::is_search(dir));
+  CHECK_FALSE(search::is_search(dir + "/rounds"));
+  CHECK_FALSE(search::is_search(dir + "/no/such"));
 }
