@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,10 @@ class BaseTask {
   const sema::Task& task() const { return text_.model.tasks[space_->of]; }
   // Whether nothing of the text is out of the picture: else points of it may be as well.
   bool is_seen() const { return is_seen_; }
+  // Where files of a text at `file` that uses this one are looked for.
+  AssetRoot assets_beside(const std::string& file) const {
+    return text_.compilation.asset_root.beside(std::span(&file, 1));
+  }
   // The .probe files that the text is made of: their names and bytes, hashed.
   const std::string& hash() const { return hash_; }
 

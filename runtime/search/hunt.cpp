@@ -26,7 +26,7 @@ Result<PlannedPoints> Hunt::plan(std::vector<space::Point> points) {
       solved = std::make_unique<Solved>(base, expert);
     }
   }
-  PROBE_ASSIGN(PlannedPoints planned, plan_points(base, std::move(points), round));
+  PROBE_ASSIGN(PlannedPoints planned, plan_points(base, std::move(points), stored_points, round));
   if (solved) PROBE_TRY(solved->begin(planned, round));
   return planned;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/search/stored_points.h"
 #include "runtime/search/method/space.h"
 #include "runtime/search/search.h"
 #include "runtime/search/shown_value.h"
@@ -24,6 +25,7 @@ struct Hunt {
   const SearchOptions& options;
   const BaseTask& base;
   SearchSummary& summary;
+  StoredPoints stored_points;
   std::unique_ptr<Solved> solved;  // null where nothing is to be proved
   std::string round;               // the folder of the round that is under way
   int rounds = 0;

@@ -12,6 +12,8 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/compile/files.h"
+#include "runtime/search/stored_points.h"
+#include "runtime/search/proofs.h"
 
 namespace probe::search {
 namespace {
@@ -142,8 +144,7 @@ class Planner {
  public:
   Planner(const BaseTask& base, std::string folder) : base_(base), folder_(std::move(folder)) {}
 
-  Result<PlannedPoints> plan(std::vector<space::Point> points) {
-    std::vector<PlannedPoint> planned = with_proofs(std::move(points));
+  Result<PlannedPoints> plan(std::vector<PlannedPoint> planned) {
     std::vector<bool> alive(planned.size(), true);
     while (true) {
       PROBE_ASSIGN(Attempt attempt, compile(planned, alive, kFile, true));
@@ -160,27 +161,6 @@ class Planner {
   }
 
  private:
-  std::vector<PlannedPoint> with_proofs(std::vector<space::Point> points) const {
-    const std::vector<double> own = space::own_values(base_.space());
-    std::vector<PlannedPoint> planned, proofs;
-    for (space::Point& point : points) {
-      PlannedPoint one{std::move(point), {}, {}, {}, kBase};
-      const std::vector<double> placed = space::placed_values(base_.space(), one.point.values);
-      if (placed == one.point.values && placed != own) {
-        one.proof = planned.size();
-      } else if (placed != own) {
-        one.proof = points.size() + proofs.size();
-        space::Point proof = one.point;
-        proof.name += "_placed";
-        proof.values = placed;
-        proofs.push_back({std::move(proof), {}, {}, {}, one.proof});
-      }
-      planned.push_back(std::move(one));
-    }
-    planned.insert(planned.end(), proofs.begin(), proofs.end());
-    return planned;
-  }
-
   struct Attempt {
     Compilation compilation;
     std::map<std::size_t, std::string> blamed;
@@ -293,9 +273,13 @@ class Planner {
 }  // namespace
 
 Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
-                                  const std::string& folder) {
+                                  StoredPoints& stored, const std::string& folder) {
   PROBE_TRY(make_lasting_folders(folder));
-  return Planner(base, folder).plan(std::move(points));
+  const std::vector<PlannedPoint> asked = with_proofs(base.space(), std::move(points));
+  if (auto known = stored.find(asked, folder)) return std::move(*known);
+  PROBE_ASSIGN(PlannedPoints planned, Planner(base, folder).plan(asked));
+  PROBE_TRY(stored.keep(asked, planned, folder));
+  return planned;
 }
 
 Status write_found(const BaseTask& base, const std::vector<space::Point>& points,

@@ -12,6 +12,8 @@
 
 namespace probe::search {
 
+class StoredPoints;
+
 // One point, as it came out.
 struct PlannedPoint {
   space::Point point;
@@ -35,9 +37,10 @@ struct PlannedPoints {
 
 // Writes `folder`/points.probe with its tables and points.csv, which says what each task changes.
 // A point that the compiler refuses is left out, with the reason; one that moves things, start by
-// start. Fails (kUsage) where the base task itself is refused there.
+// start. What `stored` has of it is not compiled again. Fails (kUsage) where the base task itself is
+// refused there.
 Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
-                                  const std::string& folder);
+                                  StoredPoints& stored, const std::string& folder);
 
 // A text of these points as one writes it to keep: `file` with its tables beside it, a suite
 // `found`. Comments say of each what `remarks` has for it.

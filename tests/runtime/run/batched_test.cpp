@@ -93,7 +93,7 @@ TEST_CASE("batches that are mixed up after they were proved spoil what they may 
 }
 
 TEST_CASE("24 episodes that vla-eval's side gathers by 8 are those in process, bit for bit") {
-  ServedRun run;
+  ServedRun run(ServedRun::Pictures::kSmall);
   const auto steps = recorded_steps(run.in_process_folder(), 1);
   REQUIRE_MESSAGE(steps.ok(), to_text(steps.failure()));
   std::atomic<std::size_t> most = 0;
@@ -112,7 +112,7 @@ TEST_CASE("24 episodes that vla-eval's side gathers by 8 are those in process, b
 }
 
 TEST_CASE("24 episodes in batches of 8 are those in process, bit for bit, on openpi and starVLA") {
-  ServedRun run;
+  ServedRun run(ServedRun::Pictures::kSmall);
   const auto steps = recorded_steps(run.in_process_folder(), 4);
   REQUIRE_MESSAGE(steps.ok(), to_text(steps.failure()));
   for (const Protocol protocol : {Protocol::kOpenpi, Protocol::kStarVla}) {

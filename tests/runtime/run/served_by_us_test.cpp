@@ -36,7 +36,7 @@ std::string address_of(servers::Protocol protocol, const wire::Listener& listene
 }  // namespace
 
 TEST_CASE("24 episodes of our own servers are those in process, bit for bit, on every protocol") {
-  ServedRun run;
+  ServedRun run(ServedRun::Pictures::kSmall);
   const auto episodes = recorded_episodes(run.in_process_folder());
   REQUIRE_MESSAGE(episodes.ok(), to_text(episodes.failure()));
   CHECK((*episodes)->size() == 24);

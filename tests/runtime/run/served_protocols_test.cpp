@@ -22,7 +22,7 @@ std::string at(const PythonServer& server, const std::string& name, const std::s
 }  // namespace
 
 TEST_CASE("24 episodes over vla-eval, GR00T and OpenVLA are those in process, bit for bit") {
-  ServedRun run;
+  ServedRun run(ServedRun::Pictures::kSmall);
   const std::string actions = "actions=" + run.actions_file();
   const std::string ours = kOurs, whole_picture = "&image=first -> video.image_0";
   {

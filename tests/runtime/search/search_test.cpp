@@ -131,6 +131,46 @@ TEST_CASE("what a case needs to fail is found exactly, and each set that was tri
   CHECK(found.findings.at("tried").size() >= 4);
 }
 
+TEST_CASE("worst cases are confirmed, shrunk from their folder, and known again without compiling") {
+  Search search(Method::kWorst, "clutter 0 .. 3 from (nut, rabbit)\nlight power 0.5 .. 2",
+                "weak:clutter>=2");
+  search.options.proves = false;
+  search.options.budget = 540;
+  const SearchSummary found = search.find();
+  CAPTURE(found.lines);
+  const Json& cases = found.findings.at("cases");
+  REQUIRE(cases.size() > 0);
+  CHECK(cases[0].at("confirmed").get<bool>());
+  CHECK(cases[0].at("changes").at("clutter").get<double>() == 2);
+  const std::string folder = search.options.run.out;
+
+  // Unless what is stored is damaged nothing is compiled again.
+  const std::string text = folder + "/rounds/001/points.probe";
+  std::filesystem::remove(text);
+  SearchSummary again = search.find();
+  CHECK(again.ran == 0);
+  CHECK(again.findings == found.findings);
+  CHECK_FALSE(is_there(text));
+  std::ofstream(folder + "/rounds/001/points.json") << "{}";
+  again = search.find();
+  CHECK(again.ran == 0);
+  CHECK(again.findings == found.findings);
+  CHECK(is_there(text));
+  std::filesystem::remove(text);
+  std::filesystem::resize_file(folder + "/rounds/001/points.plan", 1000);
+  CHECK(search.find().findings == found.findings);
+  CHECK(is_there(text));
+
+  search.options.method = Method::kMinimal;
+  search.options.from = folder;
+  search.options.run.out = folder + "_why";
+  search.options.budget.reset();
+  const SearchSummary why = search.find();
+  CAPTURE(why.lines);
+  CHECK(why.findings.at("smallest").size() == 1);
+  CHECK(why.findings.at("smallest").contains("clutter"));
+}
+
 TEST_CASE("a point that is asked for by hand is one of the space, or refused with what it has") {
   Search search(Method::kMinimal, "light power 0.5 .. 2\nwords templates of put", "expert");
   const auto says = [&](const char* at, const char* what) {

@@ -1,0 +1,15 @@
+// What the expert is asked of in place of a point: the same things in the same places, seen by
+// nobody.
+#pragma once
+
+#include <vector>
+
+#include "compiler/model/model.h"
+#include "runtime/search/points_file.h"
+
+namespace probe::search {
+
+// The points in their order, then those that prove others: each has its proof.
+std::vector<PlannedPoint> with_proofs(const sema::Space& space, std::vector<space::Point> points);
+
+}  // namespace probe::search
