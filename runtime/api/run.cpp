@@ -60,6 +60,7 @@ Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::Share
   if (given.videos < VLAPROBE_NO_VIDEOS || given.videos > VLAPROBE_ALL_VIDEOS)
     return api::usage("there is no choice of videos " + std::to_string(given.videos));
   options.video = static_cast<run::VideoChoice>(given.videos);
+  if (given.until != nullptr) PROBE_TRY(run::read_until(given.until, options));
   return options;
 }
 
@@ -148,6 +149,7 @@ int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* opti
                  {"not_attempted", made.not_attempted.count()},
                  {"not_attempted_reasons", std::move(reasons)},
                  {"notes", made.notes},
+                 {"until", made.until},
                  {"speed", made.done > 0 ? store::to_text(made.call) : ""}},
                 summary);
   });

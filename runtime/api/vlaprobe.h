@@ -499,11 +499,13 @@ typedef struct vlaprobe_run_options {
   /* Asked now and then, from any thread: not 0 ends the run as `progress` does, and refuses the
    * questions that wait. */
   int32_t (*stopped)(void* user);
+  const char* until; /* as behind --until; default: every chosen episode is run */
 } vlaprobe_run_options;
 
 /* `summary` is JSON: {"out", "total", "done", "skipped", "invalid", "not_attempted",
  * "not_attempted_reasons": [{"reason", "episodes"}], the most frequent first, "notes": [sentences],
- * "speed"}; it may be NULL. Episodes that fail are rows that are invalid, not failures of the run.
+ * "until": [sentences of what is known of a run that stops early], "speed"}; it may be NULL.
+ * Episodes that fail are rows that are invalid, not failures of the run.
  */
 VLAPROBE_EXPORT int32_t vlaprobe_run(const vlaprobe_plan* plan, const vlaprobe_run_options* options,
                                      char** summary, vlaprobe_error* error);

@@ -318,6 +318,14 @@ std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
 
 }  // namespace
 
+Status read_until(const std::string& words, RunOptions& options) {
+  options.drops_until = words == "none";
+  options.until.reset();
+  if (options.drops_until) return {};
+  PROBE_ASSIGN(options.until, adaptive::parse_rule(words));
+  return {};
+}
+
 Result<Actor> choose_actor(const RunOptions& options) {
   Actor actor;
   // Of a caller's policy the options call both so.

@@ -93,6 +93,10 @@ struct RunOptions {
   std::function<Result<std::vector<EpisodeJob>>()> next = {};
 };
 
+// "width 10%", "width 5% of all", "decided-against DIR", "none": when a run stops early, as
+// `until` or `drops_until` of `options`. Fails (kUsage) on other words.
+Status read_until(const std::string& words, RunOptions& options);
+
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;
   int not_kept = 0;                   // no success, where only successes are stored

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "runtime/search/stored_points.h"
 #include "runtime/search/method/space.h"
 #include "runtime/search/search.h"
 #include "runtime/search/shown_value.h"
+#include "runtime/search/stored_points.h"
 #include "runtime/search/trials.h"
 #include "runtime/stats/intervals.h"
 

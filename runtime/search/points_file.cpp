@@ -12,8 +12,8 @@
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/compile/files.h"
-#include "runtime/search/stored_points.h"
 #include "runtime/search/proofs.h"
+#include "runtime/search/stored_points.h"
 
 namespace probe::search {
 namespace {

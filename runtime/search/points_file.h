@@ -37,8 +37,8 @@ struct PlannedPoints {
 
 // Writes `folder`/points.probe with its tables and points.csv, which says what each task changes.
 // A point that the compiler refuses is left out, with the reason; one that moves things, start by
-// start. What `stored` has of it is not compiled again. Fails (kUsage) where the base task itself is
-// refused there.
+// start. What `stored` has of it is not compiled again. Fails (kUsage) where the base task itself
+// is refused there.
 Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
                                   StoredPoints& stored, const std::string& folder);
 

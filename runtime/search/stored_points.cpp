@@ -19,8 +19,12 @@ namespace fs = std::filesystem;
 constexpr const char* kRoundFormat = "vlaprobe search round";
 constexpr int kRoundVersion = 1;
 
-std::string plan_of(const std::string& folder) { return (fs::path(folder) / "points.plan").string(); }
-std::string table_of(const std::string& folder) { return (fs::path(folder) / "points.json").string(); }
+std::string plan_of(const std::string& folder) {
+  return (fs::path(folder) / "points.plan").string();
+}
+std::string table_of(const std::string& folder) {
+  return (fs::path(folder) / "points.json").string();
+}
 
 Json numbers(std::span<const std::uint32_t> values) {
   Json out = Json::array();
@@ -86,12 +90,13 @@ bool StoredPoints::has_assets(const PlannedPoints& planned) {
 }
 
 std::optional<PlannedPoints> StoredPoints::find(std::span<const PlannedPoint> points,
-                                              const std::string& folder) {
+                                                const std::string& folder) {
   const auto text = read_file(table_of(folder));
   if (!text) return std::nullopt;
   const Json json = Json::parse(*text);
   if (json.is_discarded() || json.value("format", "") != kRoundFormat ||
-      json.value("version", Json(0)) != Json(kRoundVersion) || json.value("key", "") != key_of(points))
+      json.value("version", Json(0)) != Json(kRoundVersion) ||
+      json.value("key", "") != key_of(points))
     return std::nullopt;
   const Json* const kept = json.find("points");
   if (kept == nullptr || !kept->is_array() || kept->size() != points.size()) return std::nullopt;
@@ -100,7 +105,9 @@ std::optional<PlannedPoints> StoredPoints::find(std::span<const PlannedPoint> po
   const auto raw = std::as_bytes(std::span(*bytes));
   auto plan = plan::Plan::from_bytes({raw.begin(), raw.end()});
   if (!plan || to_hex(plan->root()) != json.value("plan_root", "")) return std::nullopt;
-  PlannedPoints out{std::move(plan).value(), 0, {points.begin(), points.end()},
+  PlannedPoints out{std::move(plan).value(),
+                    0,
+                    {points.begin(), points.end()},
                     base_.assets_beside(plan_of(folder))};
   const auto base_task = out.plan.find_task(base_.task().name);
   if (!base_task) return std::nullopt;
@@ -113,7 +120,7 @@ std::optional<PlannedPoints> StoredPoints::find(std::span<const PlannedPoint> po
 }
 
 Status StoredPoints::keep(std::span<const PlannedPoint> points, const PlannedPoints& planned,
-                        const std::string& folder) const {
+                          const std::string& folder) const {
   if (store::own_build_id().empty()) return {};  // another program would not be told from this one
   Json kept = Json::array();
   for (const PlannedPoint& one : planned.points) kept.push_back(stored_json(one));

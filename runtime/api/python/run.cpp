@@ -130,7 +130,8 @@ std::string run(const Plan& plan, const py::dict& given, py::object answer, py::
     return given[name].cast<std::optional<std::string>>();
   };
   const auto out = text("out"), policy = text("policy"), name = text("name"),
-             content = text("content"), suite = text("suite"), tasks = text("tasks");
+             content = text("content"), suite = text("suite"), tasks = text("tasks"),
+             until = text("until");
   const auto or_null = [](const std::optional<std::string>& words) {
     return words ? words->c_str() : nullptr;
   };
@@ -166,6 +167,7 @@ std::string run(const Plan& plan, const py::dict& given, py::object answer, py::
   if (!caller.progress.is_none()) options.progress = &progress;
   options.user = &caller;
   options.stopped = &is_stopped;
+  options.until = or_null(until);
 
   char* summary = nullptr;
   const Held<vlaprobe_plan> handle = plan.get();

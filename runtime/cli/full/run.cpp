@@ -25,12 +25,9 @@ int run_verb(const CallArguments& arguments) {
   if (!options) return report(options.failure());
   const auto shard = parse_shard(arguments.shard);
   if (!shard) return report(shard.failure());
-  if (arguments.until == "none") {
-    options->drops_until = true;
-  } else if (!arguments.until.empty()) {
-    auto rule = adaptive::parse_rule(arguments.until);
-    if (!rule) return report(rule.failure());
-    options->until = std::move(*rule);
+  if (!arguments.until.empty()) {
+    if (auto read = run::read_until(arguments.until, *options); !read)
+      return report(read.failure());
   }
   options->shard = shard->first;
   options->shards = shard->second;

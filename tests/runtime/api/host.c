@@ -336,6 +336,8 @@ static void runs(const vlaprobe_plan* plan, const char* task, const char* folder
   vlaprobe_free(json);
   CHECK(vlaprobe_results("/no/such/run", &json, &error) == VLAPROBE_STORE && says("/no/such/run"));
 
+  options.until = "width 200%";
+  CHECK(vlaprobe_run(plan, &options, &json, &error) == VLAPROBE_USAGE && says("width"));
   options = (vlaprobe_run_options){.size = sizeof options,
                                    .out = expert,
                                    .policy = "expert",

@@ -33,10 +33,10 @@ suite small { tasks { small_carrot_on_plate }; seeds 42 }
     const bool is_small = pictures == Pictures::kSmall;
     task_ = is_small ? "small_carrot_on_plate" : "carrot_on_plate";
     const std::string files[] = {is_small ? text : VLAPROBE_SOURCE_DIR "/suite/intact.probe"};
-    auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
-                                  .suite = is_small ? "small" : "",
-                                  .library_folders = {VLAPROBE_SOURCE_DIR "/dsl",
-                                                      VLAPROBE_SOURCE_DIR}});
+    auto compiled =
+        build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
+                      .suite = is_small ? "small" : "",
+                      .library_folders = {VLAPROBE_SOURCE_DIR "/dsl", VLAPROBE_SOURCE_DIR}});
     REQUIRE_MESSAGE(compiled.ok(), to_text(compiled.failure()));
     REQUIRE_FALSE(compiled->plan.empty());
     auto opened = plan::Plan::from_bytes(std::move(compiled->plan));

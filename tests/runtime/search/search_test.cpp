@@ -10,6 +10,7 @@
 #include "runtime/search/merge_searches.h"
 #include "tests/compiler/space/space_text.h"
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/servers/python_server.h"
 
 namespace probe::search {
 namespace {
@@ -131,7 +132,8 @@ TEST_CASE("what a case needs to fail is found exactly, and each set that was tri
   CHECK(found.findings.at("tried").size() >= 4);
 }
 
-TEST_CASE("worst cases are confirmed, shrunk from their folder, and known again without compiling") {
+TEST_CASE(
+    "worst cases are confirmed, shrunk from their folder, and known again without compiling") {
   Search search(Method::kWorst, "clutter 0 .. 3 from (nut, rabbit)\nlight power 0.5 .. 2",
                 "weak:clutter>=2");
   search.options.proves = false;
@@ -246,6 +248,41 @@ TEST_CASE("shards of a search that are merged tell what one call tells, and run 
   search.options.method = Method::kWorst;
   search.options.run.shards = 2;
   CHECK(search.refused().where == "--shard");
+}
+
+TEST_CASE(
+    "a server that dies in the middle ends the search, and the same call goes on from there") {
+  Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
+  std::vector<std::string> words = {"openpi", "seen=fine"};
+  auto server = std::make_unique<test::PythonServer>("openpi_server.py", words);
+  REQUIRE_MESSAGE(!server->port().empty(), "Debian's python3-websockets is installed");
+  const std::string port = server->port();
+  words.push_back("port=" + port);
+  search.options.proves = false;
+  search.options.run.policy =
+      "openpi://127.0.0.1:" + port +
+      "?action.form=delta&action.units=m_rad&action.rotation=vector&chunk.length=any&chunk.use=all"
+      "&timeout.wait_s=0.05";
+  search.options.run.name = "mine";
+  search.options.run.retries = 0;
+  search.options.run.give_up_after = 1;
+  search.options.run.progress = [&](const run::RunProgress& progress) {
+    if (progress.done == 3) server.reset();
+  };
+  const Failure failure = search.refused();
+  CHECK_MESSAGE(failure.code == Fault::kPolicy, to_text(failure));
+  // Without a server nothing goes on, and nothing is lost.
+  search.options.run.progress = nullptr;
+  CHECK(search.refused().code == Fault::kPolicy);
+  server = std::make_unique<test::PythonServer>("openpi_server.py", words);
+  const SearchSummary mended = search.find();
+  CHECK(mended.is_done);
+  CHECK(mended.ran > 0);
+  CHECK(mended.ran <= mended.episodes - 2);
+  search.options.run.out += "_whole";
+  const SearchSummary whole = search.find();
+  CHECK(mended.findings.at("axes") == whole.findings.at("axes"));
+  CHECK(mended.lines == whole.lines);
 }
 
 TEST_CASE("a text without a space, with several, or with mistakes is refused") {

@@ -159,6 +159,7 @@ class Run:
             run now, found in the folder, invalid, without a skill for the task. None behind open_run().
         not_attempted_reasons: of these, the most frequent first: dicts of `reason` and `episodes`.
         notes: sentences that a reader of the results should know.
+        until: of a call that stops early, sentences of what is known of the rates.
     """
 
     def __init__(self, folder: Path, told: Optional[dict] = None) -> None:
@@ -171,6 +172,7 @@ class Run:
         self.not_attempted: Optional[int] = told.get("not_attempted")
         self.not_attempted_reasons: list[dict[str, Any]] = told.get("not_attempted_reasons", [])
         self.notes: list[str] = told.get("notes", [])
+        self.until: list[str] = told.get("until", [])
         self.speed: str = told.get("speed", "")
 
     def results(self) -> Results:
@@ -357,6 +359,7 @@ def evaluate(
     gather_s: float = 0.1,
     video: str = "none",
     if_changed: str = "refuse",
+    until: Optional[str] = None,
     progress: Union[bool, Callable[[dict], None]] = True,
 ) -> Run:
     """Runs every chosen episode once into a folder, as ``vlaprobe run`` does: with traces, proofs, and a second call that
@@ -390,6 +393,8 @@ def evaluate(
         gather_s: how long (s) an observation waits for those of other worlds at most.
         video: "none", "failures" or "all": OUT/videos/TASK/EPISODE-SEED.mp4.
         if_changed: "refuse", "fork" (write into OUT-2, ...) or "continue" (over another build).
+        until: when to stop early: "width 10%" (of each task's interval, at 95 %), "width 5% of all", "decided-against DIR"; "none" runs
+            what such a rule has left. None: every chosen episode is run.
         progress: True: a line on a terminal or in a notebook; False: none; or a callable that gets a dict of done, skipped,
             total and, but for the first, task, episode, seed, steps, success, invalid.
 
@@ -424,6 +429,7 @@ def evaluate(
         "draws": flag(draws, "`draws`"),
         "batch": whole(batch, "`batch`"),
         "gather_s": number(gather_s, "`gather_s`"),
+        "until": text_or_none(until, "`until`"),
     }
     tell = teller(progress, "episodes", "success")
     told = json.loads(_vlaprobe.run(compiled._handle, options, answer, tell))

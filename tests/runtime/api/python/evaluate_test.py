@@ -318,6 +318,8 @@ class EvaluateTest(Case):
             (dict(video="some"), ["some", "failures"]),
             (dict(if_changed="ask"), ["ask", "refuse"]),
             (dict(gather_s=-1.0), ["gather_s"]),
+            (dict(until="soon"), ["soon", "width 10%"]),
+            (dict(until=0.1), ["until", "0.1"]),
         ]:
             options = {"policy": reach_out, "tasks": TASK, "episodes": 0, "progress": False, **options}
             with self.assertRaises(vlaprobe.UsageError) as raised:
@@ -328,6 +330,21 @@ class EvaluateTest(Case):
             vlaprobe.open_run(folder)
         with self.assertRaises(vlaprobe.Error) as raised:
             vlaprobe.open_run(self.folder()).results()
+
+    def test_a_run_stops_where_its_rate_is_known(self):
+        folder = self.folder() + "/until"
+        options = dict(tasks=TASK, name="mine", content="1", out=folder, progress=False)
+        run = vlaprobe.evaluate(reach_out, suite_plan(), until="width 60%", **options)
+        results = run.results()
+        self.assertTrue(0 < len(results) < 24, len(results))
+        self.assertIn("width 60 %", results.until)
+        self.assertIn(TASK, " ".join(run.until))
+        with self.assertRaises(vlaprobe.Error) as raised:
+            vlaprobe.evaluate(reach_out, suite_plan(), until="width 30%", **options)
+        self.assertSays(raised.exception, "width 60 %")
+        whole = vlaprobe.evaluate(reach_out, suite_plan(), until="none", **options)
+        self.assertEqual(len(whole.results()), 24)
+        self.assertEqual(whole.results().until, "")
 
     def test_a_folder_of_demonstrations_has_rows_and_no_rates(self):
         folder = self.folder() + "/demos"
