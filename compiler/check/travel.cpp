@@ -79,6 +79,12 @@ struct TravelCheck {
     } else {
       carried_by.resize(1);
     }
+    std::vector<std::vector<BoxRun>> runs;
+    if (look == Look::kWay) {
+      runs.push_back(runs_of(travel.everywhere()));
+    } else {
+      for (const std::vector<PartBox>& boxes : begun) runs.push_back(runs_of(boxes));
+    }
     Found found;
     for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
       bool here = false;
@@ -88,18 +94,23 @@ struct TravelCheck {
       for (const Start::Placed& placed : starts.task.starts[e].placed) {
         const scene::Solid body = body_of(placed, look);
         const Vec3 half = body.half_extent();
-        for (const PartBox& box : boxes) {
-          if (!may_overlap(box, body.centre, half)) continue;
-          const auto carrier = carriers.find(box.part);
-          if (placed.z && carrier != carriers.end() && carrier->second.holds(body.centre)) continue;
-          const double depth = overlap(box.solid, body);
-          if (depth <= kRounding) continue;
-          here = true;
-          if (depth <= found.depth) continue;
-          found.depth = depth;
-          found.episode = e;
-          found.box = &box;
-          found.placed = &placed;
+        for (const BoxRun& run : in_start(runs, e)) {
+          if (!run.may_overlap(body.centre, half)) continue;
+          for (std::size_t i = run.begin; i < run.end; ++i) {
+            const PartBox& box = boxes[i];
+            if (!may_overlap(box, body.centre, half)) continue;
+            const auto carrier = carriers.find(box.part);
+            if (placed.z && carrier != carriers.end() && carrier->second.holds(body.centre))
+              continue;
+            const double depth = overlap(box.solid, body);
+            if (depth <= kRounding) continue;
+            here = true;
+            if (depth <= found.depth) continue;
+            found.depth = depth;
+            found.episode = e;
+            found.box = &box;
+            found.placed = &placed;
+          }
         }
       }
       found.starts += here ? 1 : 0;

@@ -51,11 +51,16 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   }
   Asset asset{path, kind, 0, {}};
   if (hashes_) {
-    const auto bytes = read_file(*file);
-    if (!bytes) return miss("cannot be read");
-    if (bytes->empty()) return miss("is empty");
-    asset.byte_size = bytes->size();
-    asset.hash = sha256(std::string_view(*bytes));
+    auto known = hashed_.find(*file);
+    if (known == hashed_.end()) {
+      const auto bytes = read_file(*file);
+      if (!bytes) return miss("cannot be read");
+      if (bytes->empty()) return miss("is empty");
+      known =
+          hashed_.emplace(*file, HashedFile{bytes->size(), sha256(std::string_view(*bytes))}).first;
+    }
+    asset.byte_size = known->second.byte_size;
+    asset.hash = known->second.hash;
   }
   if (inspect_) {
     const Status good = inspect_(holder, path, kind, hashes_ ? &asset.hash : nullptr);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/emit/asset_hashes.h"
 #include "compiler/emit/compile.h"
 #include "compiler/source/source.h"
 #include "runtime/base/asset_path.h"
@@ -40,8 +41,9 @@ struct AssetMiss {
 class AssetTable {
  public:
   // `hashes` off: bytes are not read here, which is enough to check a text.
-  AssetTable(AssetRoot root, bool hashes, AssetInspector inspect)
-      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)) {}
+  // `hashed`: what is known of files already, and what is found out here.
+  AssetTable(AssetRoot root, bool hashes, AssetInspector inspect, AssetHashes& hashed)
+      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)), hashed_(hashed) {}
 
   // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
   // file is missed once.
@@ -62,6 +64,7 @@ class AssetTable {
   std::map<std::string, AssetFolder> folders_;  // of the root, as they are needed
   bool hashes_;
   AssetInspector inspect_;
+  AssetHashes& hashed_;
   std::vector<AssetMiss> misses_;
   std::vector<Asset> assets_;
   std::map<std::pair<std::string, plan::AssetKind>, std::uint32_t> known_;

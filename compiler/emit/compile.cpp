@@ -162,12 +162,18 @@ SourceSet with_unsaved(const CompileOptions& options) {
 }
 
 // `sources`: files that are known already.
+constexpr std::size_t kHowever = static_cast<std::size_t>(-1);  // many starts
+
+// `most_starts`: a plan of more is not written; one that is written only to be looked at is not
+// proven once more.
 Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
-                            bool write, SourceSet sources) {
+                            std::size_t most_starts, SourceSet sources,
+                            emit::AssetHashes* hashed = nullptr) {
   Analyzed analyzed;
   analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
+  const bool write = compilation.starts <= most_starts;
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
@@ -176,13 +182,26 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
         std::filesystem::path(analyzed.roots.front()).parent_path().string(),
         write,
         options.inspect_asset,
-        options.wants_task};
+        options.wants_task,
+        most_starts == kHowever,
+        hashed};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
   }
   compilation.ok = !compilation.diagnostics.has_errors();
   if (!compilation.ok) compilation.plan.clear();
   return std::move(compilation);
+}
+
+// One program of those that are checked; its plan goes to whoever asked for it.
+Result<Compilation> check_program(const std::string& root, const CompileOptions& options,
+                                  SourceSet sources, emit::AssetHashes& hashed) {
+  const std::size_t most_starts = options.on_plan ? options.most_starts : 0;
+  PROBE_ASSIGN(Compilation program,
+               compile(std::span(&root, 1), options, most_starts, std::move(sources), &hashed));
+  if (!program.plan.empty()) options.on_plan(std::move(program.plan));
+  program.plan.clear();
+  return program;
 }
 
 // The named files, but for those that another named file uses without being used by them: each
@@ -236,21 +255,22 @@ void merge(Compilation&& program, Compilation& all) {
 }  // namespace
 
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options) {
-  if (files.size() < 2) return compile(files, options, false, with_unsaved(options));
+  if (files.empty()) return compile(files, options, 0, with_unsaved(options));
+  emit::AssetHashes hashed;
+  if (files.size() < 2) return check_program(files.front(), options, with_unsaved(options), hashed);
   Compilation all;
   all.ok = true;
   all.sources = with_unsaved(options);
   PROBE_ASSIGN(const std::vector<std::string> roots, program_roots(files, options, all.sources));
   for (const std::string& root : roots) {
-    PROBE_ASSIGN(Compilation program,
-                 compile(std::span(&root, 1), options, false, std::move(all.sources)));
+    PROBE_ASSIGN(Compilation program, check_program(root, options, std::move(all.sources), hashed));
     merge(std::move(program), all);
   }
   return all;
 }
 
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options) {
-  return compile(files, options, true, with_unsaved(options));
+  return compile(files, options, kHowever, with_unsaved(options));
 }
 
 Result<Counted> count(std::span<const std::string> files, const CompileOptions& options) {

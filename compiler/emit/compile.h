@@ -37,6 +37,9 @@ struct CompileOptions {
   // The tasks to keep, by name; none: all. For assets that do not serve every task.
   std::function<bool(std::string_view)> wants_task = {};
   bool wants_unheld = false;  // Compilation::unheld
+  // Of check(): gets the plan of each program without mistakes that has at most so many starts.
+  std::function<void(std::vector<std::byte>)> on_plan = {};
+  std::size_t most_starts = 0;
 };
 
 // Words of a task's instruction and the object that they mean.

@@ -21,7 +21,7 @@ Result<std::vector<std::byte>> Emitter::run(const std::vector<FileId>& files) {
   add_suites();
   writer_.fill_ids();
   if (!check_language_only(chosen)) return std::vector<std::byte>{};
-  return writer_.finish();
+  return writer_.finish({.identity = options_.proves});
 }
 
 std::vector<TaskId> Emitter::choose_tasks() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compiler/diag/diagnostic.h"
+#include "compiler/emit/asset_hashes.h"
 #include "compiler/emit/compile.h"
 #include "compiler/model/model.h"
 #include "runtime/base/asset_root.h"
@@ -22,6 +23,8 @@ struct EmitOptions {
   bool write = true;          // off: diagnostics only, no bytes
   AssetInspector inspect_asset = {};
   std::function<bool(std::string_view)> wants_task = {};
+  bool proves = true;  // off: ids are not computed once more to be sure; of what is not kept
+  AssetHashes* hashed = nullptr;  // of files that other programs have, too
 };
 
 // In: a model without errors. Out: the bytes of a plan; empty when something was reported or

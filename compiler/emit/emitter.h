@@ -55,7 +55,8 @@ class Emitter {
         sources_(sources),
         options_(options),
         diagnostics_(diagnostics),
-        assets_(options.asset_root, options.write, options.inspect_asset),
+        assets_(options.asset_root, options.write, options.inspect_asset,
+                options.hashed == nullptr ? own_hashes_ : *options.hashed),
         objects_(model.objects.size()),
         robots_(model.robots.size()),
         cameras_(model.cameras.size()),
@@ -164,6 +165,7 @@ class Emitter {
   const SourceSet& sources_;
   const EmitOptions& options_;
   Diagnostics& diagnostics_;
+  AssetHashes own_hashes_;  // where nobody gave any
   AssetTable assets_;
   plan::Writer writer_;
   std::map<std::uint32_t, std::uint32_t> texts_;  // FileId -> kTexts

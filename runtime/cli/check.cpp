@@ -56,30 +56,24 @@ constexpr std::size_t kMostStartsAsked = 20'000;
 constexpr std::size_t kMostTasksNamed = 6;
 
 // The tasks for whose goal policy `expert` finds no skills, one of those that are judged alike in
-// one scene standing for all. Nothing where that cannot be found out, as without the assets.
-std::vector<std::string> without_skills(const CheckArguments& arguments) {
+// one scene standing for all.
+std::vector<std::string> without_skills(const plan::Plan& plan) {
   std::vector<std::string> names;
-  CompiledText built = compile_quietly(arguments.files, arguments.assets, "", true, false);
-  if (built.exit != kFine) return names;
-  const auto plan = plan::Plan::from_bytes(std::move(built.plan));
-  if (!plan.ok()) return names;
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> known;  // by program and scene
-  for (std::uint32_t task = 0; task < plan->tasks().size(); ++task) {
-    const plan::TaskRecord& record = plan->tasks()[task];
-    if (!plan::skills_of(plan->tables(), task).empty()) continue;
+  for (std::uint32_t task = 0; task < plan.tasks().size(); ++task) {
+    const plan::TaskRecord& record = plan.tasks()[task];
+    if (!plan::skills_of(plan.tables(), task).empty()) continue;
     const auto [at, is_new] = known.try_emplace({record.program, record.scene}, true);
     if (is_new) {
-      const auto has = vm::has_skills(*plan, task);
+      const auto has = vm::has_skills(plan, task);
       at->second = !has.ok() || *has;
     }
-    if (!at->second) names.emplace_back(plan->text(record.name));
+    if (!at->second) names.emplace_back(plan.text(record.name));
   }
   return names;
 }
 
-void say_without_skills(const CheckArguments& arguments, const CompiledText& text) {
-  if (text.exit != kFine || arguments.json || text.starts > kMostStartsAsked) return;
-  const std::vector<std::string> names = without_skills(arguments);
+void say_without_skills(const std::vector<std::string>& names, std::size_t tasks) {
   if (names.empty()) return;
   std::string list;
   for (std::size_t i = 0; i < names.size() && i < kMostTasksNamed; ++i)
@@ -87,7 +81,7 @@ void say_without_skills(const CheckArguments& arguments, const CompiledText& tex
   if (names.size() > kMostTasksNamed)
     list += fmt::format(" and {} more", names.size() - kMostTasksNamed);
   say("note: policy `expert` finds no skills for {} of {}: {}; `solution {{ .. }}` says how\n",
-      digit_groups(names.size()), counted(text.tasks, "task"), list);
+      digit_groups(names.size()), counted(tasks, "task"), list);
 }
 
 using Clock = std::chrono::steady_clock;
@@ -134,10 +128,21 @@ int watch_verb(const CheckArguments& arguments) {
 
 int check_verb(const CheckArguments& arguments) {
   const auto start = Clock::now();
+  std::vector<std::string> names;
+  PlanTaker plans;
+  plans.most_starts = kMostStartsAsked;
+  if (!arguments.json) {
+    plans.take = [&](std::vector<std::byte> bytes) {
+      const auto plan = plan::Plan::from_bytes(std::move(bytes), {.identity = false});
+      if (!plan.ok()) return;
+      const std::vector<std::string> more = without_skills(*plan);
+      names.insert(names.end(), more.begin(), more.end());
+    };
+  }
   const CompiledText text =
-      compile_text(arguments.files, arguments.assets, "", false, arguments.json);
+      compile_text(arguments.files, arguments.assets, "", false, arguments.json, false, plans);
   if (!text.files.empty()) say_outcome(text, milliseconds_since(start));
-  say_without_skills(arguments, text);
+  if (text.exit == kFine) say_without_skills(names, text.tasks);
   return text.exit;
 }
 

@@ -13,14 +13,16 @@
 namespace probe::cli {
 
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
-                             const std::string& suite, bool want_plan, bool json,
-                             bool chosen_only) {
+                             const std::string& suite, bool want_plan, bool json, bool chosen_only,
+                             const PlanTaker& plans) {
   CompiledText text;
   auto compiled = compile::compile_files(files, {.assets = root_of(assets),
                                                  .library = assets.library,
                                                  .suite = suite,
                                                  .tasks = chosen_only ? assets.tasks : "",
-                                                 .wants_plan = want_plan});
+                                                 .wants_plan = want_plan,
+                                                 .on_plan = plans.take,
+                                                 .most_starts = plans.most_starts});
   if (!compiled) {
     text.exit = report(compiled.failure());
     return text;
@@ -76,10 +78,11 @@ void say_briefly(const Compilation& compilation, const std::string& file) {
 }
 
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
-                          const std::string& suite, bool want_plan, bool json, bool brief) {
-  CompiledText text = compile_quietly(files, assets, suite, want_plan, json);
+                          const std::string& suite, bool want_plan, bool json, bool brief,
+                          const PlanTaker& plans) {
+  CompiledText text = compile_quietly(files, assets, suite, want_plan, json, false, plans);
   if (text.only_assets_missing && !assets.tasks.empty() && assets.tasks != "*") {
-    CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true);
+    CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true, plans);
     if (chosen.exit == kFine) {
       say("note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",
           assets.tasks);

@@ -2,6 +2,8 @@
 // for.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,11 +26,18 @@ struct CompiledText {
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use
 };
 
+// Gets the plans of programs without mistakes that have at most so many starts, where no plan is
+// returned.
+struct PlanTaker {
+  std::function<void(std::vector<std::byte>)> take = {};
+  std::size_t most_starts = 0;
+};
+
 // The same in two steps: nothing is printed but a Failure of the outside, and then what was said.
 // `chosen_only`: just the tasks of AssetOptions::tasks.
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
                              const std::string& suite, bool want_plan, bool json = false,
-                             bool chosen_only = false);
+                             bool chosen_only = false, const PlanTaker& plans = {});
 void print_diagnostics(const CompiledText& text, bool json);
 
 // What a verb says that has other things to say: mistakes as they are, of warnings how many there
@@ -41,6 +50,6 @@ void say_briefly(const Compilation& compilation, const std::string& file);
 // note.
 CompiledText compile_text(const std::vector<std::string>& files, const AssetOptions& assets,
                           const std::string& suite, bool want_plan, bool json = false,
-                          bool brief = false);
+                          bool brief = false, const PlanTaker& plans = {});
 
 }  // namespace probe::cli

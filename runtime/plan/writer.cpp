@@ -117,7 +117,7 @@ std::vector<std::byte> Writer::lay_out() const {
   return join(parts);
 }
 
-Result<std::vector<std::byte>> Writer::finish() {
+Result<std::vector<std::byte>> Writer::finish(const VerifyOptions& options) {
   // Those of one thing keep the order in which they were added.
   std::ranges::stable_sort(records.spans, {},
                            [](const SpanRecord& s) { return std::pair(s.what, s.index); });
@@ -127,7 +127,7 @@ Result<std::vector<std::byte>> Writer::finish() {
   PROBE_TRY(verify(bytes, {.identity = false}));
   fill_ids();
   bytes = lay_out();
-  PROBE_TRY(verify(bytes));
+  PROBE_TRY(verify(bytes, options));
   return bytes;
 }
 

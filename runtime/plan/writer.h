@@ -15,6 +15,7 @@
 #include "runtime/base/result.h"
 #include "runtime/plan/format.h"
 #include "runtime/plan/tables.h"
+#include "runtime/plan/verify.h"
 
 namespace probe::plan {
 
@@ -47,7 +48,8 @@ class Writer {
   // Fills ProgramRecord::hash, TaskRecord::judge_id, EpisodeRecord::start_id and episode_id,
   // QuestionRecord::question_id, lays everything out and verifies the result. A Failure means that
   // the records break a rule of FORMAT.md.
-  Result<std::vector<std::byte>> finish();
+  // Without `options.identity` ids are not computed once more to be sure of them.
+  Result<std::vector<std::byte>> finish(const VerifyOptions& options = {});
 
   // The same without verifying, and without computing ids when they are filled already: for tests
   // of the verifier. Ids are only computed when every index they follow is in range.
