@@ -18,6 +18,7 @@
 #include "runtime/base/file.h"
 #include "runtime/compile/files.h"
 #include "runtime/libero/probing_text.h"
+#include "runtime/libero/released.h"
 #include "runtime/libero/rooms.h"
 #include "runtime/libero/suite_text.h"
 #include "runtime/libero/words.h"
@@ -203,6 +204,7 @@ class LiberoImport {
       say("odd", fmt::format("{} has {} tasks, the released one {}: another version", suite.folder,
                              order.stems.size(), suite.tasks));
     }
+    std::vector<std::string> others;  // than the released ones
     std::vector<TaskSource>& tasks = tasks_.emplace_back(&suite, std::vector<TaskSource>()).second;
     for (std::size_t i = 0; i < order.stems.size(); ++i) {
       const std::string& stem = order.stems[i];
@@ -213,6 +215,7 @@ class LiberoImport {
         leave_out(suite, stem, to_text(text.failure()));
         continue;
       }
+      if (!is_released_problem(suite.folder, order.numbers[i], *text)) others.push_back(stem);
       BddlRead read = read_bddl(*text, path);
       for (const Failure& odd : read.oddities) odd_.insert(shorter(to_text(odd)));
       if (!read.mistakes.empty()) {
@@ -221,7 +224,17 @@ class LiberoImport {
       }
       tasks.push_back({order.numbers[i], stem, std::move(read.problem), {}});
     }
+    say_others(suite, "problems", others, order.stems.size());
     return {};
+  }
+
+  void say_others(const Suite& suite, const char* what, const std::vector<std::string>& stems,
+                  std::size_t all) {
+    if (stems.empty()) return;
+    say("odd", fmt::format("{}: the {} of {} of {} tasks are not the released ones, so published "
+                           "rates are not of them: {}{}",
+                           suite.folder, what, stems.size(), all, stems.front(),
+                           stems.size() > 1 ? ", .." : ""));
   }
 
   void leave_out(const Suite& suite, const std::string& stem, const std::string& why) {
@@ -451,6 +464,7 @@ class LiberoImport {
       for (const ThingJoint& joint : thing.joints) joints_of[category].push_back(joint.name);
     }
     std::vector<TaskSource> whole;
+    std::vector<std::string> others;  // than the released ones
     std::size_t starts = 0;
     for (TaskSource& task : tasks) {
       if (const auto lacking = lack_of(task)) {
@@ -463,6 +477,9 @@ class LiberoImport {
         leave_out(suite, task.stem, to_text(states.failure()));
         continue;
       }
+      const auto bytes = read_file(path.string());
+      if (bytes && !are_released_starts(suite.folder, task.number, *bytes))
+        others.push_back(task.stem);
       for (std::size_t i = 0; i < states->starts.size(); ++i) {
         if (states->starts[i].time == 0 && states->starts[i].fastest == 0) continue;
         odd_.insert(
@@ -476,6 +493,7 @@ class LiberoImport {
       whole.push_back(std::move(task));
     }
     if (whole.empty()) return {};
+    say_others(suite, "stored starts", others, whole.size());
     PROBE_ASSIGN(const SuiteText text, write_suite(suite, whole, things_, rooms_, poses_, taken_));
     const std::string path = std::string(suite.folder) + ".probe";
     const std::string problems = "bddl_files/" + std::string(suite.folder);

@@ -128,6 +128,11 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
   CHECK(
       said_by(*report, "odd").find("libero_90 has 1 tasks, the released one 90: another version") !=
       std::string::npos);
+  for (const char* const what : {"problems", "stored starts"}) {
+    CHECK(said_by(*report, "odd").find("libero_90: the " + std::string(what) +
+                                       " of 1 of 1 tasks are not the released ones") !=
+          std::string::npos);
+  }
   CHECK(said_by(*report, "missing").find("libero_goal: no task") != std::string::npos);
   CHECK(said_by(*report, "missing").find("probing.probe, which asks all 130 tasks: 1 are there") !=
         std::string::npos);
@@ -401,6 +406,7 @@ TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a chec
   REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
   CHECK(report->tasks == 130);
   CHECK(report->starts == 6500);
+  CHECK(said_by(*report, "odd").find("released ones") == std::string::npos);
   for (const char* const suite :
        {"libero_spatial", "libero_object", "libero_goal", "libero_10", "libero_90"}) {
     const Compilation built = compiled(to, std::string(suite) + ".probe");

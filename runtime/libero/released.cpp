@@ -1,0 +1,45 @@
+#include "runtime/libero/released.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "runtime/base/hash_number.h"
+#include "runtime/base/sha256.h"
+
+namespace probe::libero {
+namespace {
+
+struct Released {
+  std::string_view folder;
+  std::size_t number;
+  std::uint64_t problem, starts;
+};
+constexpr Released kReleased[] = {
+#define LIBERO_RELEASED(folder, number, problem, starts) {#folder, number, problem, starts},
+#include "runtime/libero/released.def"
+};
+
+std::uint64_t number_of(std::string_view bytes) { return big_endian_number(sha256(bytes)); }
+
+bool has(std::string_view folder, std::size_t number, std::uint64_t Released::*what,
+         std::uint64_t found) {
+  const auto* const known = std::ranges::find_if(kReleased, [&](const Released& one) {
+    return one.folder == folder && one.number == number;
+  });
+  return known != std::end(kReleased) && known->*what == found;
+}
+
+}  // namespace
+
+bool is_released_problem(std::string_view folder, std::size_t number, std::string_view text) {
+  std::string plain(text);
+  std::erase(plain, '\r');
+  return has(folder, number, &Released::problem, number_of(plain));
+}
+
+bool are_released_starts(std::string_view folder, std::size_t number, std::string_view bytes) {
+  return has(folder, number, &Released::starts, number_of(bytes));
+}
+
+}  // namespace probe::libero

@@ -1,0 +1,15 @@
+// Whether files are those of the released benchmark: of another version its published numbers say
+// nothing.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace probe::libero {
+
+// The text of a .bddl file, of the suite in `folder`, by the task's number there.
+bool is_released_problem(std::string_view folder, std::size_t number, std::string_view text);
+// The bytes of its .pruned_init file.
+bool are_released_starts(std::string_view folder, std::size_t number, std::string_view bytes);
+
+}  // namespace probe::libero
