@@ -70,8 +70,9 @@ Quat turn_about(const Vec3& axis, double angle) {
 
 class Writer {
  public:
-  Writer(const sema::Model& model, const sema::Space& space, const Point& point)
-      : model_(model), space_(space), point_(point), task_(model.tasks[space.of]) {}
+  Writer(const sema::Model& model, const sema::Space& space, const Point& point,
+         const std::vector<sema::PartBox>& ways)
+      : model_(model), space_(space), point_(point), ways_(ways), task_(model.tasks[space.of]) {}
 
   WrittenPoint write(bool allowed) {
     WrittenPoint out;
@@ -222,7 +223,7 @@ class Writer {
       return true;
     }
     const Clutter clutter = clutter_of(model_, space_, point_);
-    StartRows rows = start_rows(model_, space_, point_, clutter);
+    StartRows rows = start_rows(model_, space_, point_, clutter, ways_);
     out.starts = std::move(rows.starts);
     out.left_out = std::move(rows.left_out);
     if (!out.left_out.empty()) return false;
@@ -262,6 +263,7 @@ class Writer {
   const sema::Model& model_;
   const sema::Space& space_;
   const Point& point_;
+  const std::vector<sema::PartBox>& ways_;
   const sema::Task& task_;
   std::string declarations_, statements_;
 };
@@ -324,8 +326,18 @@ std::string point_text(const sema::Space& space, const std::vector<double>& valu
 }
 
 WrittenPoint write_point(const sema::Model& model, const sema::Space& space, const Point& point,
-                         bool allowed) {
-  return Writer(model, space, point).write(allowed);
+                         bool allowed, const std::vector<sema::PartBox>& ways) {
+  return Writer(model, space, point, ways).write(allowed);
+}
+
+std::vector<sema::PartBox> ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
+                                            const AssetRoot& assets) {
+  std::vector<sema::PartBox> ways;
+  for (const sema::FixtureId id : scene.fixtures) {
+    const auto travel = sema::Travel::of(scene, model.fixtures[id], assets);
+    if (travel) ways.insert(ways.end(), travel->everywhere().begin(), travel->everywhere().end());
+  }
+  return ways;
 }
 
 }  // namespace probe::space

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "compiler/geometry/travel.h"
 #include "compiler/model/model.h"
+#include "runtime/base/asset_root.h"
 
 namespace probe::space {
 
@@ -52,8 +54,12 @@ struct WrittenPoint {
 };
 
 // The point must be one of `space`, whose task has no errors in `model`. `allowed`: whether more
-// than one axis is known to move, which the text then says is meant.
+// than one axis is known to move, which the text then says is meant. `ways`: what clutter keeps
+// clear of, ways_of_fixtures() of the task's scene.
 WrittenPoint write_point(const sema::Model& model, const sema::Space& space, const Point& point,
-                         bool allowed);
+                         bool allowed, const std::vector<sema::PartBox>& ways = {});
+// What the parts of fixtures fill wherever their joints stand. Reads their collision meshes.
+std::vector<sema::PartBox> ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
+                                            const AssetRoot& assets);
 
 }  // namespace probe::space

@@ -136,7 +136,7 @@ bool has_own_starts(const sema::Model& model, const sema::Space& space, const Po
 }
 
 StartRows start_rows(const sema::Model& model, const sema::Space& space, const Point& point,
-                     const Clutter& clutter) {
+                     const Clutter& clutter, const std::vector<sema::PartBox>& ways) {
   const sema::Task& task = model.tasks[space.of];
   StartRows out;
   std::vector<Row> rows;
@@ -144,7 +144,7 @@ StartRows start_rows(const sema::Model& model, const sema::Space& space, const P
     Row row{number, task.starts[number], {}};
     move_things(space, point, row);
     if (!clutter.objects.empty()) {
-      auto laid = lay_clutter(model, task, row.start, number, clutter.objects, point.draw);
+      auto laid = lay_clutter(model, task, row.start, number, clutter.objects, point.draw, ways);
       if (!laid) continue;
       row.clutter = *std::move(laid);
     }

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "compiler/diag/text.h"
+#include "compiler/space/points.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
 #include "runtime/compile/library.h"
@@ -53,6 +54,9 @@ Result<std::unique_ptr<BaseTask>> BaseTask::open(const TextOptions& options, std
   base->is_seen_ =
       std::ranges::none_of(base->text_.compilation.diagnostics.items(),
                            [](const Diagnostic& one) { return one.code == Code::P0505; });
+  const sema::Model& model = base->text_.model;
+  base->ways_ = space::ways_of_fixtures(model, model.scenes[base->task().scene],
+                                        base->text_.compilation.asset_root);
   Hasher hasher;
   hasher.text("search text").text(found->name);
   const SourceSet& sources = base->text_.compilation.sources;

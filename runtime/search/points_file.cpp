@@ -68,7 +68,7 @@ class Page {
   // The point's lines and its table; false, with the reason in `written`, where it has none.
   Result<bool> add(std::size_t index, const space::Point& point, space::WrittenPoint& written,
                    bool allowed, const std::string& remark = {}) {
-    written = space::write_point(base_.model(), base_.space(), point, allowed);
+    written = space::write_point(base_.model(), base_.space(), point, allowed, base_.ways());
     if (!written.left_out.empty()) return false;
     if (pages_.lines.size() <= index) pages_.lines.resize(index + 1);
     std::string text = remark;

@@ -168,6 +168,43 @@ space around of lifted { clutter 0 .. 2 from (nut, rabbit) }
   for (const auto& placed : task.starts[0].placed) CHECK(placed.z.has_value());
 }
 
+TEST_CASE("clutter keeps clear of the ways of fixtures' parts, as far as there is room") {
+  const auto base = space_text(kEverything);
+  const sema::Space& space = base->space();
+  Point point{"p", own_values(space), 5, {}};
+  point.values[axis_called(space, "clutter")] = 3;
+  const sema::Task& own = base->text.model.tasks[space.of];
+  const sema::Scene& scene = base->text.model.scenes[own.scene];
+  // A part that sweeps one half of the area.
+  const double middle = (scene.area[1] + scene.area[3]) / 2;
+  sema::PartBox part;
+  part.solid = scene::upright_solid({scene.area[0], scene.area[1], scene.surface_z},
+                                    {scene.area[2], middle, scene.surface_z + 0.1});
+  part.half = part.solid.half_extent();
+  const auto in_its_way = [&](const std::vector<sema::PartBox>& ways) {
+    const WrittenPoint written = write_point(base->text.model, space, point, false, ways);
+    AnalyzedText text;
+    const sema::Task& task = compiled(*base, written, text, "p");
+    REQUIRE(task.starts.size() == own.starts.size());
+    int found = 0;
+    for (const sema::Start& start : task.starts) {
+      for (const sema::Start::Placed& placed : start.placed) {
+        const std::string& name = text.model.objects[placed.object].name;
+        const bool is_clutter = name.find("nut") != name.npos || name.find("rabbit") != name.npos;
+        found += is_clutter && placed.y < middle ? 1 : 0;
+      }
+    }
+    return found;
+  };
+  CHECK(in_its_way({}) > 10);
+  CHECK(in_its_way({part}) == 0);
+  part.solid = scene::upright_solid({scene.area[0], scene.area[1], scene.surface_z},
+                                    {scene.area[2], scene.area[3], scene.surface_z + 0.1});
+  part.half = part.solid.half_extent();
+  const WrittenPoint none = write_point(base->text.model, space, point, false, {part});
+  CHECK(none.left_out.find("find no room") != std::string::npos);
+}
+
 TEST_CASE("draws follow from the point alone, so the same point is the same text") {
   const auto base = space_text(kEverything);
   const sema::Space& space = base->space();
