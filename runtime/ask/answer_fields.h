@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/base/json.h"
 
 namespace probe::ask {

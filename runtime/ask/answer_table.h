@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/answers.h"
 #include "runtime/store/database.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/ask_record.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/ask_record.h"
 #include "runtime/ask/models.h"
 #include "runtime/ask/queries.h"

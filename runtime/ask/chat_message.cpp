@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "runtime/ask/likely_letters.h"
+#include "runtime/ask/reading/likely_letters.h"
 #include "runtime/base/json.h"
 #include "runtime/base/printable.h"
 #include "runtime/servers/transport.h"

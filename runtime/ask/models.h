@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/ask_record.h"
-#include "runtime/ask/likely_letters.h"
+#include "runtime/ask/reading/likely_letters.h"
 #include "runtime/ask/picture.h"
 #include "runtime/ask/truth.h"
 #include "runtime/ask/wording.h"

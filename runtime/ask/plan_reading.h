@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "runtime/ask/mentions.h"
-#include "runtime/ask/read_answer.h"
+#include "runtime/ask/reading/mentions.h"
+#include "runtime/ask/reading/read_answer.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::ask {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 

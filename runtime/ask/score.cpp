@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "runtime/ask/queries.h"
-#include "runtime/ask/read_answer.h"
+#include "runtime/ask/reading/read_answer.h"
 #include "runtime/ask/truth.h"
 #include "runtime/base/numbering.h"
 #include "runtime/base/sha256.h"

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 #include "runtime/stats/intervals.h"

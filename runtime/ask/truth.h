@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/picture.h"
 #include "runtime/plan/plan.h"
 

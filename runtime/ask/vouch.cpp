@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/ask/likely_letters.h"
+#include "runtime/ask/reading/likely_letters.h"
 #include "runtime/ask/plan_reading.h"
 #include "runtime/ask/prepared.h"
 #include "runtime/ask/queries.h"

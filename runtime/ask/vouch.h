@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
-#include "runtime/ask/read_answer.h"
+#include "runtime/ask/reading/answer_row.h"
+#include "runtime/ask/reading/read_answer.h"
 #include "runtime/ask/truth.h"
 #include "runtime/plan/plan.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/base/json.h"
 #include "runtime/base/result.h"
 

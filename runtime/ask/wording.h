@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/ask/answer_row.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/plan/plan.h"
 
 namespace probe::ask {

@@ -1,12 +1,12 @@
 // Any bytes as a model's answer: it is read as one answer that the question has, or as none, and
 // always by a rule that has a name; as a restatement it is right or says why not.
-// links: probe_ask
+// links: probe_ask_reading
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
-#include "runtime/ask/mentions.h"
-#include "runtime/ask/read_answer.h"
+#include "runtime/ask/reading/mentions.h"
+#include "runtime/ask/reading/read_answer.h"
 
 namespace {
 

@@ -8,7 +8,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 build=${VLAPROBE_FUZZ_BUILD:-$root/build/fuzz}
 mkdir -p "$build/findings"
 if [ ! -f "$build/build.ninja" ]; then
-  cmake -S "$root" -B "$build" -G Ninja -DVLAPROBE_FUZZ=ON -DVLAPROBE_TESTS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+  cmake -S "$root" -B "$build" -G Ninja -DVLAPROBE_FUZZ=ON -DVLAPROBE_TESTS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -gline-tables-only" \
     -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ >"$build/configure.log" 2>&1 ||
     { cat "$build/configure.log" >&2; exit 2; }
 fi

@@ -1,6 +1,6 @@
 // Any bytes as a trace file: the reader refuses, or gives whole steps. The input is taken as the
 // file itself and, compressed, as its content with fresh check words.
-// links: probe_run zstd
+// links: probe_store zstd
 #include <sys/mman.h>
 #include <unistd.h>
 #include <zstd.h>
