@@ -8,6 +8,7 @@
 #include <map>
 
 #include "runtime/base/hash_number.h"
+#include "runtime/base/paths.h"
 #include "runtime/base/sha256.h"
 #include "runtime/base/spelling.h"
 #include "runtime/search/scale.h"
@@ -17,7 +18,7 @@ namespace probe::search {
 namespace fs = std::filesystem;
 
 Result<PlannedPoints> Hunt::plan(std::vector<space::Point> points) {
-  round = (fs::path(options.run.out) / "rounds" / fmt::format("{:03d}", ++rounds)).string();
+  round = round_folder(++rounds);
   if (options.proves) {
     if (!solved) {
       run::RunOptions expert;
@@ -31,6 +32,10 @@ Result<PlannedPoints> Hunt::plan(std::vector<space::Point> points) {
   return planned;
 }
 
+std::string Hunt::round_folder(int number) const {
+  return (fs::path(options.run.out) / "rounds" / fmt::format("{:03d}", number)).string();
+}
+
 Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
                      const std::string& kind, int first_seed) {
   run::RunOptions run = options.run;
@@ -38,6 +43,7 @@ Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
   Trials trials(base, planned, run, solved.get(), options.seed, kind, first_seed);
   // Of boundaries whole sides are shared out: what is asked next depends on what was found.
   if (options.method == Method::kAxes) trials.share(options.run.shard, options.run.shards);
+  if (is_folder(round_folder(rounds + 1))) trials.is_over();
   const Status ran = trials.run(asking);
   summary.episodes += trials.episodes();
   summary.ran += trials.ran();

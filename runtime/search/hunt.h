@@ -40,6 +40,7 @@ struct Hunt {
   }
   // A new round of these points.
   Result<PlannedPoints> plan(std::vector<space::Point> points);
+  std::string round_folder(int number) const;
   // Runs the policy in the round until `asking` is done. `kind` names its draws.
   Status try_out(const PlannedPoints& planned, const Trials::Asking& asking,
                  const std::string& kind, int first_seed = 0);

@@ -152,8 +152,7 @@ Trials::Trials(const BaseTask& base, const PlannedPoints& planned, run::RunOptio
 
 void Trials::keep(const store::ResultRow& row) {
   known_[store::key_of(row)] = success_of(row);
-  if (store::is_open(row) && row.invalid->starts_with("policy"))
-    lost_ = store::to_text(store::key_of(row)) + ": " + *row.invalid;
+  if (store::is_open(row)) lost_[store::key_of(row)] = *row.invalid;
 }
 
 Status Trials::read_known() {
@@ -166,9 +165,10 @@ Status Trials::read_known() {
         "assets or another expert; choose another folder",
         options_.out};
   PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
-  // What a server or the world spoiled is run again.
+  // What a server or the world spoiled is run again, unless what was asked next followed from its
+  // being left out.
   for (const store::ResultRow& row : rows) {
-    if (!store::is_open(row)) keep(row);
+    if (is_over_ || !store::is_open(row)) keep(row);
   }
   return {};
 }
@@ -256,12 +256,6 @@ Outcome Trials::outcome_of(const Place& place) const {
 Result<std::vector<run::EpisodeJob>> Trials::advance() {
   while (true) {
     if (!asked_.empty()) {
-      // What a server spoiled is done again by the same command: told as left out, the method would
-      // ask otherwise than it does then.
-      if (!lost_.empty())
-        return Failure{Fault::kPolicy,
-                       "an episode was lost (" + lost_ + "); the same command goes on from here",
-                       options_.policy};
       std::vector<Outcome> outcomes;
       for (const std::optional<Place>& place : asked_) {
         outcomes.push_back(place ? outcome_of(*place) : Outcome::kLeftOut);
@@ -314,6 +308,17 @@ Status Trials::run(const Asking& asking) {
   PROBE_ASSIGN(const run::RunSummary summary, run::run(planned_.plan, options));
   notes_.insert(notes_.end(), summary.notes.begin(), summary.notes.end());
   return {};
+}
+
+std::vector<std::string> Trials::notes() const {
+  std::vector<std::string> notes = notes_;
+  if (!lost_.empty()) {
+    const auto& [key, why] = *lost_.begin();
+    notes.push_back(std::to_string(lost_.size()) +
+                    (lost_.size() == 1 ? " episode is" : " episodes are") +
+                    " invalid and left out, first " + store::to_text(key) + ": " + why);
+  }
+  return notes;
 }
 
 }  // namespace probe::search

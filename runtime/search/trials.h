@@ -84,6 +84,10 @@ class Trials {
     shards_ = shards;
   }
 
+  // What was asked next followed from how these trials ended: of an episode that a server spoiled
+  // nothing else is to be told than was then.
+  void is_over() { is_over_ = true; }
+
   // Until the method is done. Fails as run() does; what was run until then is stored, and the same
   // call goes on.
   Status run(const Asking& asking);
@@ -92,7 +96,7 @@ class Trials {
   int ran() const { return ran_; }                                  // by this call
   int unfair() const { return unfair_; }    // trials whose point no start is fair of
   int invalid() const { return invalid_; }  // trials whose episodes count neither way
-  const std::vector<std::string>& notes() const { return notes_; }
+  std::vector<std::string> notes() const;
 
  private:
   struct Place {
@@ -118,7 +122,8 @@ class Trials {
   const Asking* asking_ = nullptr;
   std::vector<std::optional<Place>> asked_;
   std::map<store::EpisodeKey, std::optional<bool>> known_;       // success; none: invalid
-  std::string lost_;  // the last episode that a server spoiled
+  std::map<store::EpisodeKey, std::string> lost_;                // invalid ones, and why
+  bool is_over_ = false;
   int ran_ = 0, unfair_ = 0, invalid_ = 0;
   std::vector<std::string> notes_;
 };

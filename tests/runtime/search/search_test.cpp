@@ -7,7 +7,11 @@
 #include <fstream>
 
 #include "runtime/base/paths.h"
+#include "runtime/base/sha256.h"
 #include "runtime/search/merge_searches.h"
+#include "runtime/servers/known_observations.h"
+#include "runtime/servers/protocol.h"
+#include "runtime/servers/served.h"
 #include "tests/compiler/space/space_text.h"
 #include "tests/runtime/run/temporary_folder.h"
 #include "tests/servers/python_server.h"
@@ -283,6 +287,45 @@ TEST_CASE(
   const SearchSummary whole = search.find();
   CHECK(mended.findings.at("axes") == whole.findings.at("axes"));
   CHECK(mended.lines == whole.lines);
+}
+
+// At some pictures it asks for a step of two metres, whenever it sees them.
+class Wild final : public servers::ServedPolicy {
+ public:
+  void reset() override {}
+  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
+    const auto bytes = std::as_bytes(std::span(asked.picture.bytes));
+    auto actions = digest_->answer(asked, count);
+    if (actions && sha256(bytes).bytes[0] < 1 &&
+        !servers::is_known_observation(asked.picture.bytes, asked.words))
+      actions->front()[0] = 2;
+    return actions;
+  }
+
+ private:
+  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest().value()();
+};
+
+TEST_CASE("what a policy asks for in some episodes and nobody can do leaves these out, each time") {
+  Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
+  servers::ServeOptions served;
+  served.policy = [] { return std::make_unique<Wild>(); };
+  const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
+  REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+  search.options.proves = false;
+  search.options.run.policy = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
+                              servers::options_for_served(servers::Protocol::kOpenpi, served);
+  search.options.run.name = "wild";
+  search.options.run.retries = 0;
+  search.options.run.give_up_after = 0;
+  const SearchSummary found = search.find();
+  CHECK(found.left_out > 0);
+  REQUIRE_FALSE(found.notes.empty());
+  CHECK_MESSAGE(found.notes.back().find("invalid and left out, first") != std::string::npos,
+                found.notes.back());
+  CHECK(found.notes.back().find("2.0") != std::string::npos);
+  const SearchSummary again = search.find();
+  CHECK(again.findings == found.findings);
 }
 
 TEST_CASE("a text without a space, with several, or with mistakes is refused") {
