@@ -410,15 +410,16 @@ void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& plac
     const std::uint16_t at = all.corner[k][i];
     return DrawnCorner{seen.x[at], seen.y[at], seen.nearness[at]};
   };
-  for (std::size_t n = 0; n < shown.draws; ++n) {
-    const std::size_t i = shown.to_draw[n];
+  for (std::size_t n = 0; n < shown.to_draw.count; ++n) {
+    const std::size_t i = shown.to_draw.which[n];
     out.draw(corner(0, i), corner(1, i), corner(2, i), placed.first_id + triangle[i]);
   }
-  if (is_whole && shown.held > 0) out.note(left, right, top, bottom);
-  for (std::size_t n = 0; n < shown.held; ++n) {
-    const SeenTriangles::Sample& sample = shown.samples[n];
-    out.put(sample.at, sample.nearness, placed.first_id + triangle[sample.triangle]);
+  bool is_changed = false;
+  for (std::size_t k = 0; k < shown.boxed.size(); ++k) {
+    out.draw_boxed(all, shown.boxed[k], k, placed.first_id, triangle);
+    is_changed = is_changed || shown.boxed[k].count > 0;
   }
+  if (is_whole && is_changed) out.note(left, right, top, bottom);
 }
 
 }  // namespace probe::render

@@ -5,13 +5,17 @@
 #include <cstring>
 #include <limits>
 
+#include "runtime/render/boxed_triangles.h"
 #include "runtime/render/clones.h"
+#include "runtime/render/sample_vectors.h"
 
 namespace probe::render {
 namespace {
 
-using Floats = float __attribute__((vector_size(16)));
-using Ints = std::int32_t __attribute__((vector_size(16)));
+using samples::first_samples;
+using samples::Floats;
+using samples::Ints;
+using samples::put;
 using Doubles = double __attribute__((vector_size(32)));
 using Longs = std::int64_t __attribute__((vector_size(32)));
 
@@ -33,23 +37,6 @@ inline bool any_positive(const Ints& of) {
   return any(of >= 0);
 #endif
 }
-
-// Puts those that pass into the buffer.
-inline void put(const Ints& inside, const Floats& nearness, std::int32_t id, float* there,
-                std::uint32_t* ids) {
-  Floats old;
-  std::memcpy(&old, there, sizeof old);
-  Ints was;
-  std::memcpy(&was, ids, sizeof was);
-  const Ints pass = inside & ((nearness > old) | ((nearness == old) & (id >= was)));
-  const Floats now = pass ? nearness : old;
-  std::memcpy(there, &now, sizeof now);
-  const Ints is = pass ? Ints{} + id : was;
-  std::memcpy(ids, &is, sizeof is);
-}
-
-// Which of a pixel's samples are drawn into.
-inline Ints first_samples(int count) { return Ints{0, 1, 2, 3} < Ints{} + count; }
 
 // How near the farthest samples of tiles of 2^shift pixels a side are.
 struct Farthest {
@@ -252,6 +239,13 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
 }
 
 }  // namespace
+
+void SampleBuffer::draw_boxed(const SmallTriangles& triangles, const SomeTriangles& boxed,
+                              std::size_t box, std::uint32_t first_id, const std::uint32_t* ids) {
+  if (boxed.count == 0) return;
+  draw_boxes(triangles, boxed, kBoxes[box], first_id, ids, grid_, taken_,
+             {nearness_.data(), id_.data(), width_});
+}
 
 void SampleBuffer::resize(int width, int height, bool smooth) {
   width_ = width;

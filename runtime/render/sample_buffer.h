@@ -9,21 +9,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/render/drawn_corners.h"
+
 namespace probe::render {
-
-inline constexpr int kSubpixels = 256;  // a pixel's side, as corners are counted
-
-// A corner as it is drawn: place in subpixels, row 0 on top, and 1 / depth (1/m).
-struct DrawnCorner {
-  std::int32_t x = 0, y = 0;
-  float nearness = 0;
-};
-
-// Where the samples of a pixel lie, subpixels from its left top; least and greatest of both.
-struct SampleGrid {
-  std::array<std::int32_t, 4> across{}, down{};
-  int low = 0, high = 0;
-};
 
 class SampleBuffer {
  public:
@@ -38,16 +26,13 @@ class SampleBuffer {
   // below 2^31. Corners lie within 2^27 subpixels. A face whose corners turn against the clock as
   // seen is a front; the back of one shows nothing.
   void draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c, std::uint32_t id);
-  // One sample, numbered (y width + x) 4 + which, that a triangle holds. `note` says where such
-  // are.
-  void put(std::size_t sample, float nearness, std::uint32_t id) {
-    if (static_cast<int>(sample % 4) >= taken_) return;
-    float& near = nearness_[sample];
-    std::uint32_t& shown = id_[sample];
-    const bool passes = nearness > near || (nearness == near && id >= shown);
-    near = passes ? nearness : near;
-    shown = passes ? id : shown;
-  }
+  // The same of fronts, of which all samples lie in a box of kBoxes[box] pixels a side in the
+  // picture, the first of which has the first sample that is not left of or above all corners.
+  // `ids`: by number.
+  static constexpr std::array<int, 2> kBoxes{2, 3};
+  void draw_boxed(const SmallTriangles& triangles, const SomeTriangles& boxed, std::size_t box,
+                  std::uint32_t first_id, const std::uint32_t* ids);
+  // What draw_boxed may have changed.
   void note(int left, int right, int top, int bottom);
   // Whether samples that near would be behind everything there is in these columns and rows, to the
   // last ones; an area of many pixels is taken for seen. What is drawn makes no difference then.

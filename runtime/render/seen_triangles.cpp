@@ -1,5 +1,8 @@
 #include "runtime/render/seen_triangles.h"
 
+#include <bit>
+#include <cstring>
+
 #include "runtime/render/clones.h"
 #include "runtime/render/extremes.h"
 
@@ -13,13 +16,12 @@ static_assert(1 << kPixelShift == kSubpixels);
 // In the order that SampleBuffer::draw works in: the second and the third corner exchanged.
 struct Corners {
   std::int32_t x[3][kMost], y[3][kMost];
-  float nearness[3][kMost];
 };
 
+using Flags = std::array<std::int32_t, kMost>;  // -1 or 0
 struct Found {
-  std::int32_t is_drawn[kMost];  // 1: SampleBuffer::draw has to see it
-  std::int32_t is_tiny[kMost];  // 1: of less than a pixel a side, front, and in the picture's reach
-  std::int32_t twice_area[kMost];
+  Flags is_drawn;
+  std::array<Flags, SampleBuffer::kBoxes.size()> is_boxed;
 };
 
 PROBE_CLONES void gather(const std::int32_t* __restrict from, const std::uint16_t* __restrict at,
@@ -27,16 +29,11 @@ PROBE_CLONES void gather(const std::int32_t* __restrict from, const std::uint16_
   for (std::size_t i = 0; i < count; ++i) to[i] = from[at[i]];
 }
 
-PROBE_CLONES void gather(const float* __restrict from, const std::uint16_t* __restrict at,
-                         std::size_t count, float* __restrict to) {
-  for (std::size_t i = 0; i < count; ++i) to[i] = from[at[i]];
-}
-
-PROBE_CLONES std::int32_t sort_out(const Corners& __restrict corners, std::size_t count,
-                                   const SampleGrid& grid, std::int32_t right, std::int32_t bottom,
-                                   Found& __restrict found) {
+PROBE_CLONES void sort_out(const Corners& __restrict corners, std::size_t count,
+                           const SampleGrid& grid, std::int32_t width, std::int32_t height,
+                           Found& __restrict found) {
   const SampleGrid at = grid;
-  std::int32_t any_tiny = 0;
+  const std::int32_t right = width * kSubpixels, bottom = height * kSubpixels;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int32_t ax = corners.x[0][i], bx = corners.x[1][i], cx = corners.x[2][i];
     const std::int32_t ay = corners.y[0][i], by = corners.y[1][i], cy = corners.y[2][i];
@@ -59,52 +56,37 @@ PROBE_CLONES std::int32_t sort_out(const Corners& __restrict corners, std::size_
                (((high_y - dy) >> kPixelShift) >= ((low_y - dy + 255) >> kPixelShift));
     }
     const bool is_seen = (area > 0) & is_within & holds;
-    const bool is_tiny = is_seen & (side < kSubpixels);
-    found.is_drawn[i] = is(is_large | (is_seen & (side >= kSubpixels)));
-    found.is_tiny[i] = is(is_tiny);
-    found.twice_area[i] = area;
-    any_tiny |= found.is_tiny[i];
-  }
-  return any_tiny;
-}
-
-// Whether triangles of less than a pixel hold the sample of that place in some pixel, where, and
-// how near they are there.
-PROBE_CLONES void find_held(const Corners& __restrict corners, const float* __restrict inverse,
-                            std::size_t count, std::int32_t dx, std::int32_t dy, std::int32_t width,
-                            std::int32_t height, std::int32_t* __restrict holds,
-                            std::int32_t* __restrict pixel, float* __restrict nearness) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::int32_t ax = corners.x[0][i], bx = corners.x[1][i], cx = corners.x[2][i];
-    const std::int32_t ay = corners.y[0][i], by = corners.y[1][i], cy = corners.y[2][i];
-    // The first such sample right of and below the box's least corner is the only one it can hold.
-    const std::int32_t column = (least(ax, bx, cx) - dx + 255) >> kPixelShift;
-    const std::int32_t row = (least(ay, by, cy) - dy + 255) >> kPixelShift;
-    const auto whole = [](std::int32_t pixels) {
-      return static_cast<std::int32_t>(static_cast<std::uint32_t>(pixels) << kPixelShift);
-    };
-    const std::int32_t x = whole(column) + dx, y = whole(row) + dy;
-    const auto edge = [&](std::int32_t fx, std::int32_t fy, std::int32_t tx, std::int32_t ty) {
-      const auto product = [](std::int32_t a, std::int32_t b) {
-        return static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b);
-      };
-      return static_cast<std::int32_t>(product(tx - fx, y - fy) - product(ty - fy, x - fx));
-    };
-    const std::int32_t e0 = edge(bx, by, cx, cy), e1 = edge(cx, cy, ax, ay),
-                       e2 = edge(ax, ay, bx, by);
-    nearness[i] = static_cast<float>(e0) * (corners.nearness[0][i] * inverse[i]) +
-                  static_cast<float>(e1) * (corners.nearness[1][i] * inverse[i]) +
-                  static_cast<float>(e2) * (corners.nearness[2][i] * inverse[i]);
-    pixel[i] = row * width + column;
-    const bool is_in = (column >= 0) & (column < width) & (row >= 0) & (row < height);
-    holds[i] = is(((e0 | e1 | e2) >= 0) & is_in);
+    // Pixels that may have samples in it.
+    const std::int32_t column = (low_x - at.high + 255) >> kPixelShift,
+                       row = (low_y - at.high + 255) >> kPixelShift;
+    const std::int32_t across = ((high_x - at.low) >> kPixelShift) - column + 1,
+                       down = ((high_y - at.low) >> kPixelShift) - row + 1;
+    bool is_left = is_seen & !is_large & (column >= 0) & (row >= 0);
+    bool is_drawn = is_large | is_seen;
+    for (std::size_t k = 0; k < SampleBuffer::kBoxes.size(); ++k) {
+      const std::int32_t box = SampleBuffer::kBoxes[k];
+      const bool fits = is_left & (across <= box) & (down <= box) & (column + box <= width) &
+                        (row + box <= height);
+      found.is_boxed[k][i] = -is(fits);
+      is_left &= !fits;
+      is_drawn &= !fits;
+    }
+    found.is_drawn[i] = -is(is_drawn);
   }
 }
 
-PROBE_CLONES void invert(const std::int32_t* __restrict twice_area, std::size_t count,
-                         float* __restrict inverse) {
-  for (std::size_t i = 0; i < count; ++i)
-    inverse[i] = static_cast<float>(1 / static_cast<double>(twice_area[i]));
+// The numbers of the first `count` flags that are set.
+void list(const Flags& flags, std::size_t count, SomeTriangles& out) {
+  out.count = 0;
+  for (std::size_t first = 0; first < count; first += 32) {
+    std::uint32_t set = 0;
+    for (std::size_t i = 0; i < 32; i += 4) set |= signs_of(flags.data() + first + i) << i;
+    if (count - first < 32) set &= (1u << (count - first)) - 1;
+    for (; set != 0; set &= set - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(set));
+      out.which[out.count++] = static_cast<std::uint16_t>(first + i);
+    }
+  }
 }
 
 }  // namespace
@@ -116,47 +98,11 @@ void find_seen(const SmallTriangles& triangles, const SampleBuffer& picture, See
     const std::uint16_t* corner = triangles.corner[k == 0 ? 0 : 3 - k];
     gather(triangles.x, corner, count, corners.x[k]);
     gather(triangles.y, corner, count, corners.y[k]);
-    gather(triangles.nearness, corner, count, corners.nearness[k]);
   }
-  const SampleGrid& grid = picture.grid();
-  const std::int32_t width = picture.width(), height = picture.height();
   Found found;
-  const bool any_tiny =
-      sort_out(corners, count, grid, width * kSubpixels, height * kSubpixels, found) != 0;
-  out.draws = out.held = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    out.to_draw[out.draws] = static_cast<std::uint16_t>(i);
-    out.draws += static_cast<std::size_t>(found.is_drawn[i]);
-  }
-  if (!any_tiny) return;
-  Corners tiny;
-  std::uint16_t which[kMost];
-  std::int32_t twice_area[kMost];
-  std::size_t tinies = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    which[tinies] = static_cast<std::uint16_t>(i);
-    twice_area[tinies] = found.twice_area[i];
-    tinies += static_cast<std::size_t>(found.is_tiny[i]);
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    gather(corners.x[k], which, tinies, tiny.x[k]);
-    gather(corners.y[k], which, tinies, tiny.y[k]);
-    gather(corners.nearness[k], which, tinies, tiny.nearness[k]);
-  }
-  float inverse[kMost];
-  invert(twice_area, tinies, inverse);
-  for (std::size_t k = 0; k < grid.across.size(); ++k) {
-    std::int32_t holds[kMost], pixel[kMost];
-    float nearness[kMost];
-    find_held(tiny, inverse, tinies, grid.across[k], grid.down[k], width, height, holds, pixel,
-              nearness);
-    for (std::size_t i = 0; i < tinies; ++i) {
-      out.samples[out.held] = {
-          4 * static_cast<std::uint32_t>(pixel[i]) + static_cast<std::uint32_t>(k), nearness[i],
-          which[i]};
-      out.held += static_cast<std::size_t>(holds[i]);
-    }
-  }
+  sort_out(corners, count, picture.grid(), picture.width(), picture.height(), found);
+  list(found.is_drawn, count, out.to_draw);
+  for (std::size_t k = 0; k < out.boxed.size(); ++k) list(found.is_boxed[k], count, out.boxed[k]);
 }
 
 }  // namespace probe::render

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
 #include <vector>
@@ -58,12 +59,13 @@ int differing(const SampleBuffer& a, const SampleBuffer& b) {
 TEST_CASE("many small triangles at once show what each shows that is drawn alone") {
   std::mt19937 random(11);
   for (const bool smooth : {true, false}) {
-    for (const int side : {3, 40, 120, 255, 256, 300, 900, 40000}) {
+    for (const int side : {3, 40, 120, 255, 256, 300, 600, 900, 40000}) {
       CAPTURE(side);
       SampleBuffer alone, together;
       alone.resize(32, 32, smooth);
       together.resize(32, 32, smooth);
       std::size_t left_out = 0;
+      std::array<std::size_t, SampleBuffer::kBoxes.size()> boxed{};
       for (int round = 0; round < 30; ++round) {
         const Crowd crowd(random, side);
         SeenTriangles seen;
@@ -74,16 +76,22 @@ TEST_CASE("many small triangles at once show what each shows that is drawn alone
         };
         for (std::size_t i = 0; i < SmallTriangles::kMost; ++i)
           alone.draw(crowd.at(0, i), crowd.at(1, i), crowd.at(2, i), id(i));
-        for (std::size_t n = 0; n < seen.draws; ++n) {
-          const std::size_t i = seen.to_draw[n];
+        for (std::size_t n = 0; n < seen.to_draw.count; ++n) {
+          const std::size_t i = seen.to_draw.which[n];
           together.draw(crowd.at(0, i), crowd.at(1, i), crowd.at(2, i), id(i));
         }
-        for (std::size_t n = 0; n < seen.held; ++n)
-          together.put(seen.samples[n].at, seen.samples[n].nearness, id(seen.samples[n].triangle));
-        left_out += SmallTriangles::kMost - seen.draws;
+        std::vector<std::uint32_t> numbers;
+        for (std::size_t i = 0; i < SmallTriangles::kMost; ++i) numbers.push_back(id(i));
+        for (std::size_t k = 0; k < seen.boxed.size(); ++k) {
+          together.draw_boxed(crowd.triangles(), seen.boxed[k], k, 0, numbers.data());
+          boxed[k] += seen.boxed[k].count;
+          left_out -= seen.boxed[k].count;
+        }
+        left_out += SmallTriangles::kMost - seen.to_draw.count;
       }
       CHECK(differing(alone, together) == 0);
       if (side <= 300) CHECK(left_out > 30 * SmallTriangles::kMost / 3);
+      if (side == 600) CHECK(*std::ranges::min_element(boxed) > 0);
     }
   }
 }
