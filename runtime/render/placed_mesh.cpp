@@ -358,7 +358,8 @@ void PlacedMeshes::draw_cluster(const Instance& instance, const PlacedPart& plac
   view_places(of.x.data() + cluster.first_place, of.y.data() + cluster.first_place,
               of.z.data() + cluster.first_place, cluster.places,
               {instance.turn, instance.shift, fx_, fy_, cx_, cy_}, seen);
-  int left = 0, right = width_ - 1, top = 0, bottom = height_ - 1;
+  int left = static_cast<int>(left_), right = static_cast<int>(right_) - 1,
+      top = static_cast<int>(top_), bottom = static_cast<int>(bottom_) - 1;
   if (!seen.is_cut) {
     left = std::max(left, seen.left / kSubpixels - 1);
     right = std::min(right, seen.right / kSubpixels + 1);

@@ -124,10 +124,12 @@ PROBE_CLONES void draw_small(const DrawnCorner* c, double area, const Pixels& in
   }
 }
 
-// Any triangle: edges in doubles, which hold these whole numbers exactly.
+// Any triangle: edges in doubles, which hold these whole numbers exactly. Drawn from column `begin`
+// on; as depths are summed up from where a row of it begins, they are so from in.left on, too.
 PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in,
                              const SampleGrid& grid, int samples, std::int32_t id, int stride,
-                             float* nearness, std::uint32_t* ids, const Farthest& behind) {
+                             float* nearness, std::uint32_t* ids, int begin,
+                             const Farthest& behind) {
   Ints across, down;
   std::memcpy(&across, grid.across.data(), sizeof across);
   std::memcpy(&down, grid.down.data(), sizeof down);
@@ -204,7 +206,15 @@ PROBE_CLONES void draw_large(const DrawnCorner* c, double area, const Pixels& in
     double here = level + slope_y * y + slope_x * x0;
     const double step = slope_x * kSubpixels;
     const float* const farthest = behind.tile + (py >> behind.shift) * behind.across;
-    for (int px = left; px <= right;) {
+    int px = left;
+    if (px < begin) {
+      const int count = std::min(begin, right + 1) - px;
+      advance(count);
+      for (int i = 0; i < count; ++i) here += step;
+      at += 4 * static_cast<std::size_t>(count);
+      px += count;
+    }
+    while (px <= right) {
       const int next = std::min(right + 1, ((px >> behind.shift) + 1) << behind.shift);
       const int count = next - px;
       // A row of a tile: the nearest of it lies at one of its ends, or beyond.
@@ -266,6 +276,9 @@ void SampleBuffer::resize(int width, int height, bool smooth) {
 }
 
 void SampleBuffer::clear() {
+  left_ = top_ = 0;
+  right_ = width_ - 1;
+  bottom_ = height_ - 1;
   std::fill(nearness_.begin(), nearness_.end(), 0.0f);
   std::fill(id_.begin(), id_.end(), 0u);
   std::fill(farthest_.begin(), farthest_.end(), 0.0f);
@@ -274,6 +287,10 @@ void SampleBuffer::clear() {
 }
 
 void SampleBuffer::clear(int left, int right, int top, int bottom) {
+  left_ = left;
+  right_ = right;
+  top_ = top;
+  bottom_ = bottom;
   forget(left, right, top, bottom);
   for (int y = top; y <= bottom; ++y) {
     const auto first = static_cast<std::ptrdiff_t>(4 * at(left, y)),
@@ -296,9 +313,8 @@ void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnC
   const auto [left, right] = std::minmax({a.x, b.x, c.x});
   const auto [top, bottom] = std::minmax({a.y, b.y, c.y});
   const int x0 = first(left), x1 = last(right), y0 = first(top), y1 = last(bottom);
-  if (x0 > x1 || y0 > y1 || x1 < 0 || y1 < 0 || x0 >= width_ || y0 >= height_) return;
-  const Pixels in{std::max(x0, 0), std::min(x1, width_ - 1), std::max(y0, 0),
-                  std::min(y1, height_ - 1)};
+  Pixels in{std::max(x0, left_), std::min(x1, right_), std::max(y0, top_), std::min(y1, bottom_)};
+  if (in.left > in.right || in.top > in.bottom) return;
   const int left_tile = in.left >> kTileShift, right_tile = in.right >> kTileShift;
   const int top_tile = in.top >> kTileShift, bottom_tile = in.bottom >> kTileShift;
   if (is_looked_at_) {
@@ -320,8 +336,9 @@ void SampleBuffer::draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnC
     draw_small(corners, -area, in, grid_, taken_, static_cast<std::int32_t>(id), width_,
                nearness_.data(), id_.data());
   } else {
+    in.left = std::max(x0, 0);
     draw_large(corners, -area, in, grid_, taken_, static_cast<std::int32_t>(id), width_,
-               nearness_.data(), id_.data(), {farthest_.data(), tiles_across_, kTileShift});
+               nearness_.data(), id_.data(), left_, {farthest_.data(), tiles_across_, kTileShift});
   }
 }
 

@@ -18,7 +18,7 @@ class SampleBuffer {
   // `smooth`: four places a pixel.
   void resize(int width, int height, bool smooth);
   void clear();
-  // Columns and rows to the last ones too.
+  // Columns and rows to the last ones too; what is drawn beyond them need not be there from now on.
   void clear(int left, int right, int top, int bottom);
   // Of each pixel's samples the first so many alone, 1 to 4, are drawn into from now on.
   void take(int samples) { taken_ = samples; }
@@ -61,6 +61,7 @@ class SampleBuffer {
   void forget(int left, int right, int top, int bottom);
 
   int width_ = 0, height_ = 0, tiles_across_ = 0;
+  int left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;  // what is drawn in; the last ones too
   int taken_ = 4;
   std::vector<float> farthest_;        // by tile
   std::vector<std::uint8_t> changed_;  // since it was looked at

@@ -93,4 +93,27 @@ TEST_CASE("what is found hidden could not have shown: a picture without it has t
   CHECK(differing(plain, asked) == 0);
 }
 
+TEST_CASE("what is drawn into a part of a picture is what the whole picture shows there") {
+  constexpr int kLeft = 21, kRight = 60, kTop = 13, kBottom = 44;
+  SampleBuffer whole, part;
+  whole.resize(kWidth, kHeight, true);
+  part.resize(kWidth, kHeight, true);
+  part.clear(kLeft, kRight, kTop, kBottom);
+  std::uint32_t id = 0;
+  for (const Triangle& triangle : some_triangles(400)) {
+    draw(triangle, ++id, whole);
+    draw(triangle, id, part);
+  }
+  int there = 0;
+  for (int y = kTop; y <= kBottom; ++y) {
+    for (int x = kLeft; x <= kRight; ++x) {
+      for (int k = 0; k < 4; ++k)
+        there += whole.ids(x, y)[k] == part.ids(x, y)[k] &&
+                 whole.nearness(x, y)[k] == part.nearness(x, y)[k];
+    }
+  }
+  CHECK(there == 4 * (kRight - kLeft + 1) * (kBottom - kTop + 1));
+  CHECK(part.ids(kLeft - 10, kTop - 10)[0] == 0);
+}
+
 }  // namespace probe::render
