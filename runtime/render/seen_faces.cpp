@@ -13,6 +13,17 @@ namespace {
 inline Rgb next(const Rgb& of) { return __builtin_shufflevector(of, of, 1, 2, 0, 3); }
 inline Rgb after(const Rgb& of) { return __builtin_shufflevector(of, of, 2, 0, 1, 3); }
 
+inline void transpose(Rgb (&rows)[4]) {
+  const Rgb low_a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5),
+            low_b = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5),
+            high_a = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7),
+            high_b = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+  rows[0] = __builtin_shufflevector(low_a, low_b, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(low_a, low_b, 2, 3, 6, 7);
+  rows[2] = __builtin_shufflevector(high_a, high_b, 0, 1, 4, 5);
+  rows[3] = __builtin_shufflevector(high_a, high_b, 2, 3, 6, 7);
+}
+
 // Where corners are as the camera has it, and their colours, a row of eight a corner.
 PROBE_CLONES void view_corners(const float* __restrict arrays, std::size_t count,
                                const std::array<float, 9>& turn, const std::array<float, 3>& shift,
@@ -40,12 +51,12 @@ void SeenFaces::begin(const PlacedMeshes& meshes) {
   lit_.resize(meshes.parts().size());
   for (const std::uint32_t part : lit_parts_) lit_[part].corner.clear();
   lit_parts_.clear();
-  ids_.assign(1, 0);  // kNothing
+  count_ = 1;
 }
 
 void SeenFaces::find(const PlacedMeshes& meshes) {
   const auto& parts = meshes.parts();
-  const std::size_t count = ids_.size();
+  const std::size_t count = count_;
   asked_.resize(count);
   std::size_t at = 0;  // neighbours in a picture are mostly of one part
   for (std::size_t i = 1; i < count; ++i) {
@@ -58,6 +69,7 @@ void SeenFaces::find(const PlacedMeshes& meshes) {
   const std::uint32_t* indices = nullptr;  // of the last one's part
   const VertexCorner* corners = nullptr;
   std::size_t first_corner = 0;
+  bool is_shared = false;
   LitPart* lit = nullptr;
   for (std::size_t i = 1; i < count; ++i) {
     Asked& asked = asked_[i];
@@ -66,11 +78,24 @@ void SeenFaces::find(const PlacedMeshes& meshes) {
       indices = placed.part->indices.data();
       corners = placed.part->corners.data();
       first_corner = placed.first_corner;
+      is_shared = placed.part->corners.size() < 2 * (placed.part->indices.size() / 3);
       lit = &lit_[asked.part];
       if (lit->corner.empty()) lit_parts_.push_back(asked.part);
     }
+    const std::uint32_t* const own = indices + 3 * std::size_t{asked.triangle};
+    if (!is_shared) {
+      // Each in its turn: most have corners of their own.
+      const std::size_t first = lit->corner.size();
+      lit->corner.resize(first + 3);
+      for (std::size_t k = 0; k < 3; ++k) {
+        lit->corner[first + k] = asked.corner[k] = own[k];
+        asked.lit[k] = static_cast<std::uint32_t>(first + k);
+        __builtin_prefetch(corners + own[k]);
+      }
+      continue;
+    }
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t corner = indices[3 * std::size_t{asked.triangle} + k];
+      const std::uint32_t corner = own[k];
       std::uint32_t& slot = corner_slots_[(first_corner + corner) % kCornerSlots];
       if (slot >= lit->corner.size() || lit->corner[slot] != corner) {
         slot = static_cast<std::uint32_t>(lit->corner.size());
@@ -83,7 +108,7 @@ void SeenFaces::find(const PlacedMeshes& meshes) {
   }
   for (const std::uint32_t part : lit_parts_) light(meshes, part);
   faces_.resize(std::max(faces_.size(), count));
-  faces_[kNothing] = {};
+  faces_[0] = {};
   for (std::size_t i = 1; i < count; ++i) {
     faces_[i].id = ids_[i];
     face(meshes, asked_[i], faces_[i]);
@@ -125,12 +150,13 @@ void SeenFaces::face(const PlacedMeshes& meshes, const Asked& asked, SeenFace& f
   Rgb corner[3];  // right, down, forward
   for (std::size_t k = 0; k < 3; ++k) corner[k] = load4(rows + std::size_t{8} * asked.lit[k]);
   Rgb by_across{}, by_down{}, at_middle{}, mean{};
+  Rgb edges[4]{};
   Rgb uv_by_across{}, uv_by_down{}, uv_at_middle{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Rgb& a = corner[(k + 1) % 3];
     const Rgb& b = corner[(k + 2) % 3];
     const Rgb edge = next(a) * after(b) - after(a) * next(b);
-    face.edge[k] = edge;
+    edges[k] = edge;
     const Rgb color = load4(rows + std::size_t{8} * asked.lit[k] + 4);
     by_across += edge[0] * color;
     by_down += edge[1] * color;
@@ -147,6 +173,10 @@ void SeenFaces::face(const PlacedMeshes& meshes, const Asked& asked, SeenFace& f
     uv_by_down += edge[1] * uv;
     uv_at_middle += edge[2] * uv;
   }
+  transpose(edges);
+  face.edge_by_across = edges[0];
+  face.edge_by_down = edges[1];
+  face.edge_at_middle = edges[2];
   face.by_across = by_across;
   face.by_down = by_down;
   face.at_middle = at_middle;

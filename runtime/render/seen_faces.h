@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "runtime/render/mipmap.h"
@@ -17,8 +18,8 @@ namespace probe::render {
 struct SeenFace {
   Rgb by_across{}, by_down{}, at_middle{};           // red, green, blue 0 .. 1, and the denominator
   Rgb uv_by_across{}, uv_by_down{}, uv_at_middle{};  // u, v
-  std::array<Rgb, 3>
-      edge{};  // what each corner's share comes from: by across, by down, in the middle
+  // What the three corners' shares come from.
+  Rgb edge_by_across{}, edge_by_down{}, edge_at_middle{};
   Rgb mean{};  // colour where the plane is not before the eye
   const MipChain* texture = nullptr;
   float volume = 0;        // depth (m) = volume / denominator
@@ -26,22 +27,30 @@ struct SeenFace {
   std::uint16_t body = 0;  // as segmentation has it
 };
 
+// The depth of what a pixel shows: where the triangle's plane has none there, that of its sample.
+inline float shown_depth(float depth, const SeenFace& face, float nearness) {
+  if (depth > 0 && depth <= std::numeric_limits<float>::max()) return depth;
+  return face.id == 0 ? 0 : 1 / nearness;
+}
+
 class SeenFaces {
  public:
-  static constexpr std::uint32_t kNothing = 0;  // the place of what shows nothing
+  static constexpr std::size_t kMost = 2048;
 
   // Nothing is known any more.
   void begin(const PlacedMeshes& meshes);
-  // `id`: a triangle's number, or 0 for nothing. Where it will be.
+  // `id`: a triangle's number, or 0 for nothing. Where it will be. Whether it is known cannot be
+  // foreseen, so nothing branches.
   std::uint32_t ask(std::uint32_t id) {
-    if (id == 0) return kNothing;
-    std::uint32_t& slot = slots_[id % kSlots];
-    if (slot < ids_.size() && ids_[slot] == id) return slot;
-    slot = static_cast<std::uint32_t>(ids_.size());
-    ids_.push_back(id);
+    const std::size_t known = id == 0 ? 0 : slots_[id % kSlots];
+    const bool is_known = (known < count_) & (ids_[known] == id);
+    const auto slot = static_cast<std::uint32_t>(is_known ? known : count_);
+    slots_[id % kSlots] = slot;
+    ids_[count_] = id;
+    count_ += is_known ? 0 : 1;
     return slot;
   }
-  // Finds what was asked for since begin().
+  // Finds what was asked for since begin(), kMost at most.
   void find(const PlacedMeshes& meshes);
   const SeenFace& operator[](std::uint32_t slot) const { return faces_[slot]; }
 
@@ -68,7 +77,8 @@ class SeenFaces {
   static constexpr std::size_t kSlots = 1024, kCornerSlots = 4096;
   std::array<std::uint32_t, kSlots> slots_{};
   std::array<std::uint32_t, kCornerSlots> corner_slots_{};
-  std::vector<std::uint32_t> ids_;
+  std::array<std::uint32_t, kMost + 2> ids_{};  // the first is nothing's
+  std::size_t count_ = 1;
   std::vector<Asked> asked_;
   std::vector<SeenFace> faces_;
   std::vector<LitPart> lit_;  // by part

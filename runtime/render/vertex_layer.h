@@ -1,7 +1,6 @@
 // A scene drawn by the vertex law: triangles in samples, and the bytes of pixels that show them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,11 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/render/mixed_pixels.h"
 #include "runtime/render/picture.h"
 #include "runtime/render/placed_mesh.h"
 #include "runtime/render/sample_buffer.h"
 #include "runtime/render/seen_faces.h"
-#include "runtime/render/seen_fragments.h"
+#include "runtime/render/seen_rows.h"
 
 namespace probe::render {
 
@@ -39,17 +39,14 @@ class VertexLayer {
   void show_own(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror* mirror,
                 const Picture* reflected, Picture& picture);
   static std::size_t row_from(std::span<const PixelAt> pixels, std::size_t first);
-  void find_fragments(std::span<const PixelAt> pixels);
-  void add_reflected(std::span<const PixelAt> pixels, const PlacedMeshes::Mirror& mirror,
-                     const Picture& reflected);
-  void write(std::span<const PixelAt> pixels, Picture& picture) const;
-  std::size_t middle_of(std::size_t first, std::size_t end) const;
+  void sort_out(std::span<const PixelAt> pixels);
+  void add_reflected(const PlacedMeshes::Mirror& mirror, const Picture& reflected);
 
   PlacedMeshes meshes_;
   SampleBuffer buffer_;
   SeenFaces faces_;
-  SeenFragments fragments_;
-  std::vector<std::uint32_t> ends_;  // in fragments_, by pixel
+  SeenRows rows_;
+  MixedPixels mixed_;
   std::vector<PixelAt> mirror_pixels_;
   Picture reflected_;  // a layer that is mirrored shows itself here
 };
