@@ -1,6 +1,7 @@
 #include "compiler/emit/assets.h"
 
 #include <optional>
+#include <span>
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
@@ -68,6 +69,17 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   }
   assets_.push_back(std::move(asset));
   return at->second = static_cast<std::uint32_t>(assets_.size() - 1);
+}
+
+std::optional<scene::ImageSize> AssetTable::image_size(std::uint32_t asset) {
+  const auto [at, is_new] = sizes_.try_emplace(asset);
+  if (!is_new) return at->second;
+  const std::string& path = assets_[asset].path;
+  const auto bytes = read_file(root_.file(path));
+  if (!bytes) return at->second;
+  const auto size = scene::image_size(std::as_bytes(std::span(*bytes)), path);
+  if (size) at->second = *size;
+  return at->second;
 }
 
 }  // namespace probe::emit

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "runtime/base/asset_root.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/format.h"
+#include "runtime/scene/image.h"
 
 namespace probe::emit {
 
@@ -51,6 +53,8 @@ class AssetTable {
                     AssetOwner owner);
 
   bool has(const std::string& path) const;
+  // Of one that is there: the size that it says it has; nothing where it is no image.
+  std::optional<scene::ImageSize> image_size(std::uint32_t asset);
   // The first of `stem` + extension that is there, else with the first extension.
   std::string find(const std::string& stem, std::span<const std::string_view> extensions) const;
 
@@ -68,6 +72,7 @@ class AssetTable {
   std::vector<AssetMiss> misses_;
   std::vector<Asset> assets_;
   std::map<std::pair<std::string, plan::AssetKind>, std::uint32_t> known_;
+  std::map<std::uint32_t, std::optional<scene::ImageSize>> sizes_;
 };
 
 }  // namespace probe::emit

@@ -1,6 +1,7 @@
 #include "runtime/search/stored_points.h"
 
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <vector>
 
@@ -32,12 +33,16 @@ Json numbers(std::span<const std::uint32_t> values) {
   return out;
 }
 
-std::optional<std::vector<std::uint32_t>> whole_numbers(const Json* json) {
+// Whole numbers below `bound`.
+std::optional<std::vector<std::uint32_t>> whole_numbers(const Json* json, std::size_t bound) {
   if (json == nullptr || !json->is_array()) return std::nullopt;
   std::vector<std::uint32_t> out;
   for (const Json& one : *json) {
     if (!one.is_number()) return std::nullopt;
-    out.push_back(one.get<std::uint32_t>());
+    const double number = one.get<double>();
+    if (!(number >= 0 && number < static_cast<double>(bound)) || number != std::floor(number))
+      return std::nullopt;
+    out.push_back(static_cast<std::uint32_t>(number));
   }
   return out;
 }
@@ -50,17 +55,23 @@ Json stored_json(const PlannedPoint& point) {
           {"why", point.why}};
 }
 
-bool read_stored(const Json& json, std::size_t tasks, PlannedPoint& point) {
-  auto starts = whole_numbers(json.find("starts")), wanted = whole_numbers(json.find("wanted"));
+// Starts of a point stand one for each start of its task in the plan, and are some of the base's.
+bool read_stored(const Json& json, const plan::Plan& plan, std::size_t base_starts,
+                 PlannedPoint& point) {
+  auto starts = whole_numbers(json.find("starts"), base_starts);
+  auto wanted = whole_numbers(json.find("wanted"), base_starts);
   const Json* const task = json.find("task");
   if (!starts || !wanted || task == nullptr) return false;
   point.starts = std::move(*starts);
   point.point.starts = std::move(*wanted);
   point.why = json.value("why", "");
   if (!task->is_number()) return task->is_null() && point.starts.empty();
-  point.task = task->get<std::uint32_t>();
-  return *point.task < tasks;
+  point.task = plan.find_task(point.point.name);
+  return point.task && Json(*point.task) == *task &&
+         plan.episodes(plan.tasks()[*point.task]).size() == point.starts.size();
 }
+
+std::string points_hash(const Json& json) { return to_hex(sha256(json.dump())); }
 
 }  // namespace
 
@@ -99,7 +110,9 @@ std::optional<PlannedPoints> StoredPoints::find(std::span<const PlannedPoint> po
       json.value("key", "") != key_of(points))
     return std::nullopt;
   const Json* const kept = json.find("points");
-  if (kept == nullptr || !kept->is_array() || kept->size() != points.size()) return std::nullopt;
+  if (kept == nullptr || !kept->is_array() || kept->size() != points.size() ||
+      json.value("points_sha256", "") != points_hash(*kept))
+    return std::nullopt;
   const auto bytes = read_file(plan_of(folder));
   if (!bytes) return std::nullopt;
   const auto raw = std::as_bytes(std::span(*bytes));
@@ -113,7 +126,8 @@ std::optional<PlannedPoints> StoredPoints::find(std::span<const PlannedPoint> po
   if (!base_task) return std::nullopt;
   out.base_task = *base_task;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!read_stored((*kept)[i], out.plan.tasks().size(), out.points[i])) return std::nullopt;
+    if (!read_stored((*kept)[i], out.plan, base_.task().starts.size(), out.points[i]))
+      return std::nullopt;
   }
   if (!has_assets(out)) return std::nullopt;
   return out;
@@ -128,6 +142,7 @@ Status StoredPoints::keep(std::span<const PlannedPoint> points, const PlannedPoi
                      {"version", kRoundVersion},
                      {"key", key_of(points)},
                      {"plan_root", to_hex(planned.plan.root())},
+                     {"points_sha256", points_hash(kept)},
                      {"points", std::move(kept)}};
   PROBE_TRY(write_file(plan_of(folder), planned.plan.bytes()));
   const std::string text = json.dump() + "\n";

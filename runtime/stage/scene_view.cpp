@@ -9,6 +9,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/base/trig.h"
+#include "runtime/scene/photo_shape.h"
 #include "runtime/stage/backdrop.h"
 #include "runtime/stage/robot_of.h"
 #include "runtime/stage/task_bodies.h"
@@ -191,23 +192,6 @@ Result<std::unique_ptr<SceneView>> SceneView::create(const plan::Plan& plan,
   return view;
 }
 
-// A photo is scaled to the picture, so it has the picture's shape; a pixel of rounding is fine.
-Status check_shape(const scene::Texture& photo, const plan::CameraRecord& camera,
-                   const std::string& where) {
-  const double across = static_cast<double>(photo.width) * camera.height;
-  const double down = static_cast<double>(photo.height) * camera.width;
-  const double rounding = 1.5 * std::max(camera.width, camera.height);
-  if (std::abs(across - down) <= std::max(rounding, 0.01 * down)) return {};
-  const auto size = [](auto width, auto height) {
-    return std::to_string(width) + " x " + std::to_string(height);
-  };
-  return Failure{Fault::kRender,
-                 "the photo is " + size(photo.width, photo.height) +
-                     " pixels, the camera's picture " + size(camera.width, camera.height) +
-                     ": a photo of another size is scaled, one of another shape must be cut first",
-                 where};
-}
-
 Result<std::unique_ptr<render::Renderer>> SceneView::open_renderer(const Eye& eye) const {
   render::SceneSpec spec = seen_;
   spec.camera = carried(eye.on_mount, eye.mount);
@@ -258,9 +242,11 @@ Result<SceneView::Eye> SceneView::open_eye(const plan::Plan& plan, const plan::S
   // A photo was taken from one place: a camera that moves sees the scene's meshes instead.
   if (record.photo != plan::kNone && eye.moving_mount < 0) {
     eye.photo = assets_->photo(record.photo);
-    PROBE_TRY(check_shape(
-        *eye.photo, camera,
-        where + ", photo `" + std::string(plan.text(plan.assets()[record.photo].path)) + "`"));
+    if (const auto defect = scene::photo_defect({eye.photo->width, eye.photo->height}, camera.width,
+                                                camera.height)) {
+      const std::string_view path = plan.text(plan.assets()[record.photo].path);
+      return Failure{Fault::kRender, *defect, where + ", photo `" + std::string(path) + "`"};
+    }
   }
   PROBE_ASSIGN(eye.renderer, open_renderer(eye));
   return eye;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "runtime/base/file.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/sha256.h"
 #include "runtime/search/merge_searches.h"
@@ -161,6 +162,13 @@ TEST_CASE(
   again = search.find();
   CHECK(again.ran == 0);
   CHECK(again.findings == found.findings);
+  CHECK(is_there(text));
+  // As many starts as nothing has.
+  std::string points = read_file(folder + "/rounds/001/points.json").value();
+  points.insert(points.find("\"starts\":[") + 10, "0,0,0,");
+  std::ofstream(folder + "/rounds/001/points.json") << points;
+  std::filesystem::remove(text);
+  CHECK(search.find().findings == found.findings);
   CHECK(is_there(text));
   std::filesystem::remove(text);
   std::filesystem::resize_file(folder + "/rounds/001/points.plan", 1000);

@@ -38,7 +38,6 @@ camera loose like small { jitter 3cm 5deg }
 camera wrist_loose like wrist { jitter 5mm 3deg }
 scene loose_eyes like table { camera loose, wrist_loose as hand }
 scene photographed like table { camera third_view overlay "wall.png" }
-scene wide_photo like table { camera third_view overlay "wide.png" }
 scene lowered like table { surface 82cm area (-34cm, -20cm) .. (4cm, 20cm) }
 scene raised  like table { surface 89cm area (-34cm, -20cm) .. (4cm, 20cm) }
 scene lowered_photo like lowered { camera third_view overlay "wall.png" }
@@ -57,7 +56,6 @@ variants of carrot_on_plate {
   carrot_loose   { scene loose_eyes }
   carrot_photo   { scene photographed }
   carrot_eyes    { scene three_eyes }
-  carrot_wide    { scene wide_photo }
   carrot_lowered { scene lowered }
   carrot_raised  { scene raised }
   carrot_lowered_photo { scene lowered_photo }
@@ -67,7 +65,7 @@ variant carrot_photo_lamp of carrot_photo { light lamp }
 variant eggplant_fine of put_eggplant_in_basket { light lamp }
 suite pictures trained on bridge_v2 {
   tasks { carrot_on_plate, carrot_evening, carrot_lamp, carrot_corners, carrot_no_corners, carrot_nearer,
-          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_wide, carrot_loose,
+          carrot_small, carrot_shifted, carrot_smooth, carrot_wrist, carrot_photo, carrot_photo_lamp, carrot_eyes, carrot_loose,
           carrot_lowered, carrot_raised, carrot_lowered_photo,
           put_eggplant_in_basket, eggplant_fine }
   seeds 42
@@ -228,16 +226,22 @@ TEST_CASE("lights, cameras and backdrops of the language are what is drawn") {
   CHECK(starts.size() == pictures.plan().tasks().size());  // every one of these is in the id
 }
 
-TEST_CASE("a photo of another shape than the picture is refused with both sizes") {
+TEST_CASE("a photo of another shape than the picture is refused before a run, with both sizes") {
   const Pictures pictures;
-  const std::uint32_t tasks[] = {pictures.task("carrot_wide")};
-  auto assets = SharedAssets::load(pictures.plan(), pictures.root(), tasks);
-  REQUIRE(assets.ok());
-  const auto view = SceneView::create(pictures.plan(), tasks[0], *assets);
-  REQUIRE_FALSE(view.ok());
-  CHECK(to_text(view.failure()).find("320 x 200 pixels, the camera's picture 640 x 480") !=
-        std::string::npos);
-  CHECK(view.failure().where.starts_with("camera `third_view`, photo `"));
+  const std::string text = pictures.root() + "/../wide.probe";
+  std::ofstream(text) << "use \"pictures.probe\"\n"
+                         "scene wide_photo like table { camera third_view overlay \"wide.png\" }\n"
+                         "variant carrot_wide of carrot_on_plate { scene wide_photo }\n";
+  const std::string files[] = {text};
+  const auto checked =
+      check(files, {.asset_root = pictures.root(),
+                    .library_folders = {VLAPROBE_SOURCE_DIR "/dsl", VLAPROBE_SOURCE_DIR}});
+  REQUIRE_MESSAGE(checked.ok(), to_text(checked.failure()));
+  REQUIRE(checked->diagnostics.size() == 1);
+  const Diagnostic& said = checked->diagnostics.items().front();
+  CHECK(said.code == Code::P0304);
+  CHECK(said.message.find("320 x 200 pixels, the camera's picture 640 x 480") != std::string::npos);
+  CHECK(said.message.find("scenes/wide.png") != std::string::npos);
 }
 
 // Share of the picture that shows the backdrop within a millimetre of height `z`.
