@@ -331,7 +331,7 @@ void PlacedMeshes::draw_all(SampleBuffer& out) {
     const Ball& ball = parts_[p].part->around;
     const Instance& instance = instances_[parts_[p].instance];
     if (into_ && parts_[p].instance == into_->instance) continue;
-    order_.push_back({instance.to_camera(ball.middle).z() + ball.radius, p});
+    order_.push_back({instance.to_camera(ball.middle).z(), p});
   }
   std::ranges::sort(order_);
   for (const auto& [depth, part] : order_) draw_part(parts_[part], out, nullptr);
