@@ -162,18 +162,20 @@ SourceSet with_unsaved(const CompileOptions& options) {
 }
 
 // `sources`: files that are known already.
-constexpr std::size_t kHowever = static_cast<std::size_t>(-1);  // many starts
+struct WantedPlan {
+  bool is_wanted = false;
+  bool is_kept = false;         // else only looked at, and not proven once more
+  std::size_t most_starts = 0;  // of one that is not kept
+};
 
-// `most_starts`: a plan of more is not written; one that is written only to be looked at is not
-// proven once more.
 Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
-                            std::size_t most_starts, SourceSet sources,
+                            WantedPlan plan, SourceSet sources,
                             emit::AssetHashes* hashed = nullptr) {
   Analyzed analyzed;
   analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
-  const bool write = compilation.starts <= most_starts;
+  const bool write = plan.is_wanted && (plan.is_kept || compilation.starts <= plan.most_starts);
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
@@ -183,7 +185,7 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
         write,
         options.inspect_asset,
         options.wants_task,
-        most_starts == kHowever,
+        plan.is_kept,
         hashed};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
@@ -196,9 +198,9 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
 // One program of those that are checked; its plan goes to whoever asked for it.
 Result<Compilation> check_program(const std::string& root, const CompileOptions& options,
                                   SourceSet sources, emit::AssetHashes& hashed) {
-  const std::size_t most_starts = options.on_plan ? options.most_starts : 0;
+  const WantedPlan plan{static_cast<bool>(options.on_plan), false, options.most_starts};
   PROBE_ASSIGN(Compilation program,
-               compile(std::span(&root, 1), options, most_starts, std::move(sources), &hashed));
+               compile(std::span(&root, 1), options, plan, std::move(sources), &hashed));
   if (!program.plan.empty()) options.on_plan(std::move(program.plan));
   program.plan.clear();
   return program;
@@ -255,7 +257,7 @@ void merge(Compilation&& program, Compilation& all) {
 }  // namespace
 
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options) {
-  if (files.empty()) return compile(files, options, 0, with_unsaved(options));
+  if (files.empty()) return compile(files, options, {}, with_unsaved(options));
   emit::AssetHashes hashed;
   if (files.size() < 2) return check_program(files.front(), options, with_unsaved(options), hashed);
   Compilation all;
@@ -270,7 +272,7 @@ Result<Compilation> check(std::span<const std::string> files, const CompileOptio
 }
 
 Result<Compilation> build(std::span<const std::string> files, const CompileOptions& options) {
-  return compile(files, options, kHowever, with_unsaved(options));
+  return compile(files, options, {true, true, 0}, with_unsaved(options));
 }
 
 Result<Counted> count(std::span<const std::string> files, const CompileOptions& options) {

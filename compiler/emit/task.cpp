@@ -225,6 +225,7 @@ void Emitter::add_task(const sema::Task& task) {
   record.prompt = writer_.text(task.prompt);
   record.scene = scenes_[task.scene];
   record.camera = cameras_[views.front().camera];
+  check_photo(views.front(), task.scene, records().scenes[scenes_[task.scene]].photo);
   if (has_names(views)) record.views = add_views(views, task.scene);
   record.light = lights_[light_of(model_, task)];
   const auto program = add_program(task, task.judged, bodies, task.horizon);
