@@ -30,14 +30,16 @@ std::string AssetTable::find(const std::string& stem,
 std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, const Span& span,
                               AssetOwner owner) {
   const auto [at, is_new] = known_.try_emplace({path, kind}, plan::kNone);
-  if (!is_new) return at->second;
   const auto miss = [&](std::string why) {
-    for (const AssetMiss& known : misses_) {
-      if (known.path == path) return plan::kNone;  // for another use
+    for (AssetMiss& known : misses_) {
+      if (known.path != path) continue;
+      known.owners.push_back(owner);  // whatever it is for
+      return plan::kNone;
     }
-    misses_.push_back({path, std::move(why), span, owner});
+    misses_.push_back({path, std::move(why), span, {owner}});
     return plan::kNone;
   };
+  if (!is_new) return at->second == plan::kNone ? miss({}) : at->second;
   // What the verifier would refuse without a place.
   if (!plan::is_asset_path(path))
     return miss("is not written straight, without `.`, `..`, `\\` and empty parts");

@@ -36,8 +36,8 @@ struct AssetOwner {
 // A file that is not there or not good.
 struct AssetMiss {
   std::string path, why;
-  Span span;
-  AssetOwner owner;
+  Span span;  // where the first of them names it
+  std::vector<AssetOwner> owners;
 };
 
 class AssetTable {

@@ -45,7 +45,9 @@ void Emitter::report_misses(const std::vector<TaskId>& chosen) {
     std::string names;
     std::size_t count = 0;
     for (const TaskId id : chosen) {
-      if (!needs(model_.tasks[id], miss.owner) || ++count > kNamed) continue;
+      const bool is_needed = std::ranges::any_of(
+          miss.owners, [&](const AssetOwner& owner) { return needs(model_.tasks[id], owner); });
+      if (!is_needed || ++count > kNamed) continue;
       names += (count == 1 ? "`" : ", `") + model_.tasks[id].name + "`";
     }
     if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";

@@ -137,7 +137,7 @@ void read_model_database(const fs::path& file, DataFolder& data) {
   }
 }
 
-Result<DataFolder> find_data(const std::string& folder) {
+Result<DataFolder> find_data(const std::string& folder, const std::string& robot) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return Failure{Fault::kAsset, "is not a folder", folder};
   DataFolder data;
@@ -153,7 +153,8 @@ Result<DataFolder> find_data(const std::string& folder) {
   if (data.models.empty() && data.photos.empty() && !data.urdf && data.stages.empty()) {
     return Failure{Fault::kAsset,
                    "no SimplerEnv data in it: looked six folders deep for `models` (a folder a "
-                   "model), `real_inpainting`, `stages` and `wx250s.urdf`",
+                   "model), `real_inpainting`, `stages` and " +
+                       robot,
                    folder};
   }
   return data;

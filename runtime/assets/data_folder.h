@@ -30,8 +30,8 @@ struct DataFolder {
 };
 
 // Looks at most six folders deep. Fails (kAsset) when `folder` is not there, and when it
-// holds none of these, saying what was looked for.
-Result<DataFolder> find_data(const std::string& folder);
+// holds none of these, saying what was looked for; `robot`: which description, in words.
+Result<DataFolder> find_data(const std::string& folder, const std::string& robot);
 
 // {"id": {"bbox": {"min": [..], "max": [..]}, "scales": [..], "density": ..}, ..}; an entry that is
 // there already stays. What cannot be used goes to `odd`.

@@ -378,7 +378,9 @@ const char* to_word(Verdict verdict) {
 }
 
 Result<ImportReport> import_data(const ImportOptions& options) {
-  PROBE_ASSIGN(DataFolder data, find_data(options.from));
+  PROBE_ASSIGN(DataFolder data, find_data(options.from, options.suite == ImportFor::kGoogle
+                                                            ? "the Google robot's `.urdf`"
+                                                            : "`wx250s.urdf`"));
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
   return Import(options, std::move(data), std::move(out)).run();
 }

@@ -63,8 +63,12 @@ TEST_CASE("what the Google suite's README says of the expert is what its table h
        {"| probing questions, every place", "google_probing_places"},
        {"| probing questions, all 265 tasks", "google_probing"}}};
   const std::vector<std::vector<std::string>> columns = {
-      {"can horizontal", "can vertical", "can standing"}, {"move near"}, {"open"}, {"close"},
-      {"apple"},                                          {"other things"}};
+      {"can horizontal", "can vertical", "can standing"},
+      {"move near"},
+      {"open"},
+      {"close"},
+      {"apple"},
+      {"other things"}};
   std::ifstream in(kSuites + "google/README.md");
   std::map<std::string, std::string> rows;  // the last that begins so: of the expert's table
   for (std::string line; std::getline(in, line);)

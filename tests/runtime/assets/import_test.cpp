@@ -232,7 +232,10 @@ TEST_CASE("a folder without such data, or that is none, says what was looked for
   TemporaryFolder folder;
   fs::create_directories(folder / "empty");
   CHECK(says(to_text(import_data({folder / "empty", folder / "out", ""}).failure()),
-             "no SimplerEnv data in it"));
+             "`stages` and `wx250s.urdf`"));
+  CHECK(says(
+      to_text(import_data({folder / "empty", folder / "out", "", ImportFor::kGoogle}).failure()),
+      "`stages` and the Google robot's `.urdf`"));
   CHECK(says(to_text(import_data({folder / "none", folder / "out", ""}).failure()),
              "is not a folder"));
   CHECK_FALSE(fs::exists(folder / "out"));
