@@ -161,13 +161,14 @@ SourceSet with_unsaved(const CompileOptions& options) {
   return sources;
 }
 
-// `sources`: files that are known already.
+// Which programs become bytes, and for whom.
 struct WantedPlan {
   bool is_wanted = false;
   bool is_kept = false;         // else only looked at, and not proven once more
   std::size_t most_starts = 0;  // of one that is not kept
 };
 
+// `sources`: files that are known already.
 Result<Compilation> compile(std::span<const std::string> files, const CompileOptions& options,
                             WantedPlan plan, SourceSet sources,
                             emit::AssetHashes* hashed = nullptr) {
