@@ -66,7 +66,7 @@ bool is_clear(const std::vector<sema::PartBox>& ways, const std::vector<sema::Bo
 std::optional<std::vector<sema::Start::Placed>> lay_clutter(
     const sema::Model& model, const sema::Task& task, const sema::Start& start, std::size_t number,
     const std::vector<sema::ObjectId>& objects, std::uint64_t of,
-    const std::vector<sema::PartBox>& ways) {
+    const std::vector<sema::PartBox>& ways, const std::vector<sema::BoxRun>& runs) {
   const sema::Scene& scene = model.scenes[task.scene];
   const auto& area = scene.area;
   const sema::Robot& robot = model.robots[scene.robot];
@@ -78,7 +78,6 @@ std::optional<std::vector<sema::Start::Placed>> lay_clutter(
     if (auto eye = sema::Frustum::of(model, scene, model.cameras[view.camera]))
       eyes.push_back(*std::move(eye));
   }
-  const std::vector<sema::BoxRun> runs = sema::runs_of(ways);
   std::vector<sema::Start::Placed> laid;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const sema::Object& object = model.objects[objects[i]];

@@ -139,12 +139,14 @@ StartRows start_rows(const sema::Model& model, const sema::Space& space, const P
                      const Clutter& clutter, const std::vector<sema::PartBox>& ways) {
   const sema::Task& task = model.tasks[space.of];
   StartRows out;
+  const std::vector<sema::BoxRun> runs = sema::runs_of(ways);
   std::vector<Row> rows;
   for (const std::uint32_t number : wanted_starts(task, point)) {
     Row row{number, task.starts[number], {}};
     move_things(space, point, row);
     if (!clutter.objects.empty()) {
-      auto laid = lay_clutter(model, task, row.start, number, clutter.objects, point.draw, ways);
+      auto laid =
+          lay_clutter(model, task, row.start, number, clutter.objects, point.draw, ways, runs);
       if (!laid) continue;
       row.clutter = *std::move(laid);
     }
