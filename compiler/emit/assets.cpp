@@ -52,21 +52,17 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
     const std::string& why = file.failure().message;
     return miss(why == "there is no such file" ? "is not there" : why);
   }
-  Asset asset{path, kind, 0, {}};
-  if (hashes_) {
-    auto known = hashed_.find(*file);
-    if (known == hashed_.end()) {
-      const auto bytes = read_file(*file);
-      if (!bytes) return miss("cannot be read");
-      if (bytes->empty()) return miss("is empty");
-      known =
-          hashed_.emplace(*file, HashedFile{bytes->size(), sha256(std::string_view(*bytes))}).first;
-    }
-    asset.byte_size = known->second.byte_size;
-    asset.hash = known->second.hash;
+  auto known = hashed_.find(*file);
+  if (known == hashed_.end()) {
+    const auto bytes = read_file(*file);
+    if (!bytes) return miss("cannot be read");
+    if (bytes->empty()) return miss("is empty");
+    known =
+        hashed_.emplace(*file, HashedFile{bytes->size(), sha256(std::string_view(*bytes))}).first;
   }
+  Asset asset{path, kind, known->second.byte_size, known->second.hash};
   if (inspect_) {
-    const Status good = inspect_(holder, path, kind, hashes_ ? &asset.hash : nullptr);
+    const Status good = inspect_(holder, path, kind, asset.hash);
     if (!good) return miss(good.failure().message);
   }
   assets_.push_back(std::move(asset));

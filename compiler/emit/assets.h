@@ -42,10 +42,9 @@ struct AssetMiss {
 
 class AssetTable {
  public:
-  // `hashes` off: bytes are not read here, which is enough to check a text.
   // `hashed`: what is known of files already, and what is found out here.
-  AssetTable(AssetRoot root, bool hashes, AssetInspector inspect, AssetHashes& hashed)
-      : root_(std::move(root)), hashes_(hashes), inspect_(std::move(inspect)), hashed_(hashed) {}
+  AssetTable(AssetRoot root, AssetInspector inspect, AssetHashes& hashed)
+      : root_(std::move(root)), inspect_(std::move(inspect)), hashed_(hashed) {}
 
   // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
   // file is missed once.
@@ -66,7 +65,6 @@ class AssetTable {
 
   AssetRoot root_;
   std::map<std::string, AssetFolder> folders_;  // of the root, as they are needed
-  bool hashes_;
   AssetInspector inspect_;
   AssetHashes& hashed_;
   std::vector<AssetMiss> misses_;

@@ -19,10 +19,9 @@
 
 namespace probe {
 
-// Whether a file of the assets is good: `path` relative to `folder`, its hash when it is known.
-using AssetInspector =
-    std::function<Status(const std::string& folder, const std::string& path, plan::AssetKind kind,
-                         const Sha256* hash)>;
+// Whether a file of the assets is good: `path` relative to `folder`, and the hash of its bytes.
+using AssetInspector = std::function<Status(const std::string& folder, const std::string& path,
+                                            plan::AssetKind kind, const Sha256& hash)>;
 
 struct CompileOptions {
   // What lies beside the texts is looked for, too.
@@ -78,9 +77,8 @@ struct Compilation {
 //
 // Diagnoses the files and everything they use. Each file that no other named one uses is a program
 // of its own, so two of them may declare the same names; of files that use each other, each is one
-// too, and what is said of both is said once. Assets are looked for and inspected, not
-// hashed. A Failure is only for the outside: a root file that cannot be read (kIo), a suite
-// that no file declares (kUsage).
+// too, and what is said of both is said once. What build() refuses it refuses. A Failure is only
+// for the outside: a root file that cannot be read (kIo), a suite that no file declares (kUsage).
 Result<Compilation> check(std::span<const std::string> files, const CompileOptions& options);
 
 // The same, and when nothing is wrong the verified plan. Same text and assets, same bytes, from any

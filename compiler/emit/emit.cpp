@@ -15,12 +15,12 @@ Result<std::vector<std::byte>> Emitter::run(const std::vector<FileId>& files) {
   add_questions();
   report_constants();
   report_misses(chosen);
-  if (diagnostics_.has_errors() || !options_.write) return std::vector<std::byte>{};
+  if (diagnostics_.has_errors()) return std::vector<std::byte>{};
   add_assets();
   add_sets();
   add_suites();
   writer_.fill_ids();
-  if (!check_language_only(chosen)) return std::vector<std::byte>{};
+  if (!check_language_only(chosen) || !options_.write) return std::vector<std::byte>{};
   return writer_.finish({.identity = options_.proves});
 }
 

@@ -55,7 +55,7 @@ class Emitter {
         sources_(sources),
         options_(options),
         diagnostics_(diagnostics),
-        assets_(options.asset_root, options.write, options.inspect_asset,
+        assets_(options.asset_root, options.inspect_asset,
                 options.hashed == nullptr ? own_hashes_ : *options.hashed),
         objects_(model.objects.size()),
         robots_(model.robots.size()),

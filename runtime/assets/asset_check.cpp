@@ -63,12 +63,12 @@ const Manifest& AssetCheck::manifest(const std::string& folder) const {
 }
 
 Status AssetCheck::operator()(const std::string& folder, const std::string& path,
-                              plan::AssetKind kind, const Sha256* hash) const {
+                              plan::AssetKind kind, const Sha256& hash) const {
   const fs::path file = fs::path(folder) / path;
   if (const ManifestEntry* entry = manifest(folder).find(path)) {
     std::error_code error;
     const bool same_size = fs::file_size(file, error) == entry->bytes && !error;
-    if (same_size && (hash == nullptr || to_hex(*hash) == entry->sha256)) return {};
+    if (same_size && to_hex(hash) == entry->sha256) return {};
   }
   scene::MeshLimits limits;
   limits.asset_root = folder;

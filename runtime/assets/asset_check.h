@@ -19,10 +19,10 @@ class AssetCheck {
   static Result<AssetCheck> open(const AssetRoot& root);
 
   // Reads the file as a run would and says what is wrong with it, without its path. A file whose
-  // size, and hash where it is known, are the manifest's is taken as good. `folder` may be another
+  // size and hash are the manifest's is taken as good. `folder` may be another
   // than those that were opened, beside a text: what is no manifest of ours vouches for nothing.
   Status operator()(const std::string& folder, const std::string& path, plan::AssetKind kind,
-                    const Sha256* hash) const;
+                    const Sha256& hash) const;
 
  private:
   const Manifest& manifest(const std::string& folder) const;

@@ -1,6 +1,7 @@
 // vlaprobe check
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <map>
@@ -135,9 +136,12 @@ int check_verb(const CheckArguments& arguments) {
     plans.take = [&](std::vector<std::byte> bytes) {
       const auto plan = plan::Plan::from_bytes(std::move(bytes), {.identity = false});
       if (!plan.ok()) return;
-      const std::vector<std::string> more = without_skills(*plan);
-      names.insert(names.end(), more.begin(), more.end());
+      // Several programs may use one task.
+      for (std::string& name : without_skills(*plan)) {
+        if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+      }
     };
+    plans.forget = [&] { names.clear(); };
   }
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json, false, plans);

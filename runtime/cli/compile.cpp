@@ -82,6 +82,7 @@ CompiledText compile_text(const std::vector<std::string>& files, const AssetOpti
                           const PlanTaker& plans) {
   CompiledText text = compile_quietly(files, assets, suite, want_plan, json, false, plans);
   if (text.only_assets_missing && !assets.tasks.empty() && assets.tasks != "*") {
+    if (plans.forget) plans.forget();
     CompiledText chosen = compile_quietly(files, assets, suite, want_plan, json, true, plans);
     if (chosen.exit == kFine) {
       say("note: the assets lack what other tasks need; compiled are only the tasks `{}`\n",

@@ -31,6 +31,7 @@ struct CompiledText {
 struct PlanTaker {
   std::function<void(std::vector<std::byte>)> take = {};
   std::size_t most_starts = 0;
+  std::function<void()> forget = {};  // what was taken: all is compiled again
 };
 
 // The same in two steps: nothing is printed but a Failure of the outside, and then what was said.

@@ -1,6 +1,8 @@
 // Which axes matter, and which two matter together.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "runtime/search/hunt.h"
 #include "runtime/search/method/axes.h"
 #include "runtime/search/scale.h"
@@ -28,6 +30,12 @@ std::string text_of(const sema::Space& space, std::size_t axis, const Side& side
                                 : of.name + " other than " + value;
 }
 
+// Trials to ask for so that `least` count, where as many are left out as here.
+int budget_for(const AxesFinding& found, int least) {
+  const double asked = static_cast<double>(found.failures.n) + found.left_out;
+  return static_cast<int>(std::ceil(1.2 * least * asked / static_cast<double>(found.failures.n)));
+}
+
 }  // namespace
 
 Status search_axes(Hunt& hunt) {
@@ -35,7 +43,14 @@ Status search_axes(Hunt& hunt) {
   AxesOptions options;
   options.seed = hunt.options.seed;
   if (hunt.options.budget) options.points = *hunt.options.budget;
-  Axes axes(method_space(space), options);
+  const Space of_method = method_space(space);
+  const int least = Axes::least_trials(of_method);
+  if (options.points < least)
+    return Failure{
+        Fault::kUsage,
+        fmt::format("`axes` takes {} trials at least: five to each part of an axis", least),
+        "--budget"};
+  Axes axes(of_method, options);
   PROBE_TRY(hunt.try_points({[&] { return axes.done(); }, [&] { return axes.ask(); },
                              [&](std::span<const Outcome> told) { axes.tell(told); }},
                             "axes"));
@@ -49,10 +64,15 @@ Status search_axes(Hunt& hunt) {
         fmt::format("{} more were left out, so what is said is of the fair part of the space "
                     "(points.csv has why)",
                     found.left_out));
-  if (found.failures.k == 0 || found.failures.k == found.failures.n) {
-    summary.lines.push_back(found.failures.n == 0
-                                ? "no point that was drawn is fair, so nothing was tried"
-                                : "all that were tried end alike, so there is nothing to compare");
+  const bool are_alike = found.failures.k == 0 || found.failures.k == found.failures.n;
+  if (are_alike || found.too_few) {
+    summary.lines.push_back(
+        found.failures.n == 0 ? "no point that was drawn is fair, so nothing was tried"
+        : found.too_few
+            ? fmt::format("{} trials count, which is too few to compare parts of axes: {} have to; "
+                          "a search in another folder with --budget {} may have them",
+                          found.failures.n, least, budget_for(found, least))
+            : "all that were tried end alike, so there is nothing to compare");
     summary.findings["failures"] = json_of(found.failures);
     summary.findings["effects"] = Json::array();
     summary.findings["pairs"] = Json::array();
@@ -101,7 +121,7 @@ Status search_axes(Hunt& hunt) {
                      {"tested", one.tested},
                      {"synergy", one.synergy},
                      {"p", one.p},
-                     {"share", one.share},
+                     {"share", one.share ? Json(*one.share) : Json(nullptr)},
                      {"side_a", text_of(space, one.a, one.side_a)},
                      {"side_b", text_of(space, one.b, one.side_b)},
                      {"both", json_of(one.both)},

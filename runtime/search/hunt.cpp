@@ -215,4 +215,19 @@ Result<std::vector<double>> values_from(const sema::Space& space, const Json& ch
   return values;
 }
 
+Result<Case> read_case(const sema::Space& space, const Json& one, const std::string& where) {
+  const Json* const changes = one.find("changes");
+  if (changes == nullptr || !changes->is_object())
+    return Failure{Fault::kUsage, "its case does not say what it changes", where};
+  Case found;
+  PROBE_ASSIGN(found.values, values_from(space, *changes));
+  const std::string draw = one.value("draw", "");
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(draw.data(), draw.data() + draw.size(), number, 16);
+  if (draw.empty() || error != std::errc() || end != draw.data() + draw.size())
+    return Failure{Fault::kUsage, "its case lacks what was drawn beside it", where};
+  found.draw = number;
+  return found;
+}
+
 }  // namespace probe::search

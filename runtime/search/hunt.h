@@ -64,7 +64,9 @@ Json json_of(const stats::Interval& interval);
 Json json_of(const sema::Space& space, const std::vector<double>& values);
 
 Status search_boundary(Hunt& hunt);
+// A shard of it is a search of its own: other draws and seeds, and its part of the error.
 Status search_worst(Hunt& hunt);
+inline constexpr int kMostWorstShards = 40;
 Status search_minimal(Hunt& hunt);
 // The case that `minimal` is asked about. Fails (kUsage) where it is none of the space.
 Result<Case> case_of(const SearchOptions& options, const BaseTask& base);
@@ -72,6 +74,11 @@ Status search_axes(Hunt& hunt);
 
 // "light.power 0.3, clutter 2" as values of all axes. Fails (kUsage, where = --at).
 Result<std::vector<double>> read_point(const sema::Space& space, const std::string& text);
+// A case of a `worst` as its search.json has it. Fails (kUsage, where).
+Result<Case> read_case(const sema::Space& space, const Json& one, const std::string& where);
+// Writes found.probe in `folder` with the cases of a `worst` that are confirmed, none where there
+// are none. Reads the text that `findings` name. Fails where it is gone or another now.
+Status keep_found(const Json& findings, const std::string& folder);
 // Values of the axes of a case as json_of wrote it.
 Result<std::vector<double>> values_from(const sema::Space& space, const Json& changes);
 

@@ -8,7 +8,10 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/paths.h"
+#include "runtime/search/hunt.h"
+#include "runtime/search/merge_worst.h"
 #include "runtime/search/search.h"
+#include "runtime/search/stored_points.h"
 
 namespace probe::search {
 namespace {
@@ -19,60 +22,59 @@ std::string in(const std::string& folder, const std::string& name) {
   return (fs::path(folder) / name).string();
 }
 
-// Where the text of the space lies is said as seen from each folder.
-std::string without_use(const std::string& text) {
+// Where the text of the space lies is said as seen from each folder: the text with that line
+// replaced.
+std::string with_use(const std::string& text, const std::string& use) {
   const std::size_t begin = text.find("\nuse \"");
   if (begin == text.npos) return text;
-  return text.substr(0, begin) + text.substr(std::min(text.find('\n', begin + 1), text.size()));
+  return text.substr(0, begin) + use +
+         text.substr(std::min(text.find('\n', begin + 1), text.size()));
 }
 
-// The files of a round that say what its points are: the same in every shard.
-Status copy_texts(const std::string& from, const std::string& to) {
+// The files of a round that say what its points are: the same in every shard. `file`: the text of
+// the space.
+Status copy_texts(const std::string& from, const std::string& to,
+                  const std::string& file_of_space) {
   PROBE_TRY(make_lasting_folders(to));
   PROBE_ASSIGN(const auto names, list_folder(from));
   for (const std::string& name : names) {
     const std::string file = in(from, name), there = in(to, name);
-    if (!is_file(file)) continue;
+    // What a round was compiled to is of one program and one place: the next call compiles it
+    // again.
+    if (!is_file(file) || is_stored_point_file(name)) continue;
     if (!is_there(there)) {
       PROBE_TRY(copy_to_disk(file, there));
+      if (!name.ends_with(".probe") || file_of_space.empty()) continue;
+      PROBE_ASSIGN(const std::string text, read_file(there));
+      const std::string own = with_use(text, "\nuse \"" + use_of(file_of_space, to) + "\"");
+      PROBE_TRY(write_file(there, std::as_bytes(std::span(own))));
       continue;
     }
     PROBE_ASSIGN(const std::string a, read_file(file));
     PROBE_ASSIGN(const std::string b, read_file(there));
-    if (without_use(a) != without_use(b)) return Failure{Fault::kUsage, "the round has other points than " + there, file};
+    if (with_use(a, "") != with_use(b, ""))
+      return Failure{Fault::kUsage, "the round has other points than " + there, file};
   }
   return {};
 }
 
-}  // namespace
+// Folders of each round of the joined search, by its name there.
+using Rounds = std::map<std::string, std::vector<std::string>>;
 
-Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
-  PROBE_ASSIGN(const SearchSummary first, read_search(options.dirs.front()));
-  for (const std::string& dir : options.dirs) {
-    PROBE_ASSIGN(const SearchSummary other, read_search(dir));
-    for (const auto& [key, value] : first.findings.at("asked").items()) {
-      const Json* const theirs = other.findings.at("asked").find(key);
-      if (theirs != nullptr && *theirs == value) continue;
-      return Failure{Fault::kUsage,
-                     "it was begun with another " + key + " than " + options.dirs.front(), dir};
-    }
-  }
-  if (is_search(options.out)) {
-    PROBE_ASSIGN(const SearchSummary there, read_search(options.out));
-    if (there.findings.at("asked") != first.findings.at("asked"))
-      return Failure{Fault::kUsage, "it holds another search", options.out};
-  }
-  std::map<std::string, std::vector<std::string>> rounds;  // name to folders of shards
-  for (const std::string& dir : options.dirs) {
-    const std::string of = in(dir, "rounds");
-    if (!is_folder(of)) continue;
-    PROBE_ASSIGN(const auto names, list_folder(of));
-    for (const std::string& name : names) rounds[name].push_back(in(of, name));
-  }
+Status add_rounds(const std::string& dir, const std::string& prefix, Rounds& rounds) {
+  const std::string of = in(dir, "rounds");
+  if (!is_folder(of)) return {};
+  PROBE_ASSIGN(const auto names, list_folder(of));
+  for (const std::string& name : names) rounds[prefix + name].push_back(in(of, name));
+  return {};
+}
+
+Result<store::MergeSummary> merge_rounds(const Rounds& rounds, const std::string& file,
+                                         const store::MergeOptions& options) {
   store::MergeSummary all;
   for (const auto& [name, folders] : rounds) {
     const std::string to = in(in(options.out, "rounds"), name);
-    for (const std::string& folder : folders) PROBE_TRY(copy_texts(folder, to));
+    for (const std::string& folder : folders) PROBE_TRY(copy_texts(folder, to, file));
     // Runs of the round by the name that they have in it: the policy's, and the expert's together.
     std::map<std::string, std::vector<std::string>> runs;
     for (const std::string& folder : folders) {
@@ -97,6 +99,91 @@ Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
       all.notes.insert(all.notes.end(), merged.notes.begin(), merged.notes.end());
     }
   }
+  return all;
+}
+
+// What two folders of one search were begun with alike; a shard's number may differ.
+Status check_alike(const std::string& first_dir, const Json& first, const std::string& dir,
+                   const Json& other) {
+  for (const auto& [a, b] : {std::pair(&first, &other), std::pair(&other, &first)}) {
+    for (const auto& [key, value] : a->items()) {
+      if (key == kShardKey) continue;
+      const Json* const theirs = b->find(key);
+      if (theirs != nullptr && *theirs == value) continue;
+      return Failure{Fault::kUsage, "it was begun with another " + key + " than " + first_dir, dir};
+    }
+  }
+  return {};
+}
+
+// Found by shards that are searches of their own, each finished. found.probe needs the text.
+Result<store::MergeSummary> merge_worst(const store::MergeOptions& options) {
+  std::vector<WorstShard> shards;
+  for (const std::string& dir : options.dirs) {
+    if (std::ranges::any_of(shards, [&](const auto& one) { return is_same(one.folder, dir); }))
+      continue;
+    PROBE_ASSIGN(SearchSummary read, read_search(dir));
+    PROBE_ASSIGN(WorstShard shard, worst_shard(dir, std::move(read.findings)));
+    for (const WorstShard& other : shards) {
+      if (other.number == shard.number)
+        return Failure{Fault::kUsage, "it is the same shard as " + other.folder, dir};
+      if (other.of != shard.of)
+        return Failure{Fault::kUsage,
+                       "it is one of " + std::to_string(shard.of) + " shards, " + other.folder +
+                           " one of " + std::to_string(other.of),
+                       dir};
+    }
+    shards.push_back(std::move(shard));
+  }
+  std::ranges::sort(shards, {}, &WorstShard::number);
+  const Json joined = joined_worst(shards);
+  if (is_search(options.out)) {
+    PROBE_ASSIGN(const SearchSummary there, read_search(options.out));
+    if (there.findings.at("asked") != joined.at("asked"))
+      return Failure{Fault::kUsage, "it holds another search", options.out};
+    for (const Json& number : there.findings.value("shards", Json::array())) {
+      const bool is_named = std::ranges::any_of(
+          shards, [&](const WorstShard& shard) { return number == Json(shard.number); });
+      if (!is_named)
+        return Failure{Fault::kUsage,
+                       "it holds shard " + number.dump() + ", too: name its folder as well",
+                       options.out};
+    }
+  }
+  Rounds rounds;
+  for (const WorstShard& shard : shards)
+    PROBE_TRY(add_rounds(shard.folder, shard.prefix(), rounds));
+  PROBE_ASSIGN(store::MergeSummary all, merge_rounds(rounds, joined.value("file", ""), options));
+  PROBE_TRY(write_search(options.out, joined));
+  if (static_cast<int>(shards.size()) < shards.front().of)
+    all.notes.push_back(std::to_string(shards.size()) + " of " + std::to_string(shards.front().of) +
+                        " shards: what they found holds without the others");
+  if (const Status kept = keep_found(joined, options.out); !kept)
+    all.notes.push_back("found.probe is not written (" + to_text(kept.failure()) +
+                        "); that of each shard stands beside it");
+  all.notes.push_back("`vlaprobe search show " + options.out + "` tells what was found");
+  return all;
+}
+
+}  // namespace
+
+Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
+  PROBE_ASSIGN(const SearchSummary first, read_search(options.dirs.front()));
+  const Json& asked = first.findings.at("asked");
+  for (const std::string& dir : options.dirs) {
+    PROBE_ASSIGN(const SearchSummary other, read_search(dir));
+    PROBE_TRY(check_alike(options.dirs.front(), asked, dir, other.findings.at("asked")));
+  }
+  if (asked.value("method", "") == to_text(Method::kWorst)) return merge_worst(options);
+  if (is_search(options.out)) {
+    PROBE_ASSIGN(const SearchSummary there, read_search(options.out));
+    if (there.findings.at("asked") != first.findings.at("asked"))
+      return Failure{Fault::kUsage, "it holds another search", options.out};
+  }
+  Rounds rounds;
+  for (const std::string& dir : options.dirs) PROBE_TRY(add_rounds(dir, "", rounds));
+  PROBE_ASSIGN(store::MergeSummary all,
+               merge_rounds(rounds, first.findings.value("file", ""), options));
   if (!is_search(options.out)) {
     PROBE_TRY(
         copy_to_disk(in(options.dirs.front(), "search.json"), in(options.out, "search.json")));

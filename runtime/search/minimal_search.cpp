@@ -1,7 +1,6 @@
 // Which changes of a failing case are needed for it to fail.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <utility>
 
@@ -61,16 +60,7 @@ Result<Case> case_of(const SearchOptions& options, const BaseTask& base) {
     return no_case(
         fmt::format("{} has {} cases, no number {}", options.from, cases->size(), options.number),
         "--case");
-  const Json& one = (*cases)[options.number - 1];
-  Case found;
-  PROBE_ASSIGN(found.values, values_from(of, one.at("changes")));
-  const std::string draw = one.value("draw", "");
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(draw.data(), draw.data() + draw.size(), number, 16);
-  if (draw.empty() || error != std::errc() || end != draw.data() + draw.size())
-    return no_case("its case lacks what was drawn beside it", options.from);
-  found.draw = number;
-  return found;
+  return read_case(of, (*cases)[options.number - 1], options.from);
 }
 
 Status search_minimal(Hunt& hunt) {

@@ -22,20 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFile = "points.probe";
 
-// As a `use` in a file of `folder` says it. A way up through a link would lead elsewhere.
-std::string use_of(const std::string& file, const std::string& folder) {
-  const std::string whole = absolute_path(file);
-  const fs::path from = fs::path(absolute_path(folder));
-  std::string written = fs::path(whole).lexically_relative(from).generic_string();
-  if (written.empty() || !is_same((from / written).string(), whole)) written = whole;
-  std::string text;
-  for (const char c : written) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text;
-}
-
 // A suite's name that the text has not.
 std::string free_suite(const BaseTask& base, const char* what) {
   std::string name = base.space().name + "_" + what;
@@ -271,6 +257,19 @@ class Planner {
 };
 
 }  // namespace
+
+std::string use_of(const std::string& file, const std::string& folder) {
+  const std::string whole = absolute_path(file);
+  const fs::path from = fs::path(absolute_path(folder));
+  std::string written = fs::path(whole).lexically_relative(from).generic_string();
+  if (written.empty() || !is_same((from / written).string(), whole)) written = whole;
+  std::string text;
+  for (const char c : written) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text;
+}
 
 Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
                                   StoredPoints& stored, const std::string& folder) {

@@ -42,6 +42,9 @@ struct PlannedPoints {
 Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point> points,
                                   StoredPoints& stored, const std::string& folder);
 
+// As a `use` in a file of `folder` says `file`. A way up through a link would lead elsewhere.
+std::string use_of(const std::string& file, const std::string& folder);
+
 // A text of these points as one writes it to keep: `file` with its tables beside it, a suite
 // `found`. Comments say of each what `remarks` has for it.
 Status write_found(const BaseTask& base, const std::vector<space::Point>& points,

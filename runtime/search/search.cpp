@@ -22,11 +22,6 @@ std::string file_of(const std::string& folder) {
   return (fs::path(folder) / "search.json").string();
 }
 
-Status write_json(const std::string& path, const Json& json) {
-  const std::string text = json.dump(1) + "\n";
-  return write_file(path, std::as_bytes(std::span(text.data(), text.size())));
-}
-
 // What a folder is begun with; of boundaries and minimal sets the budget may grow later.
 Json asked_of(const SearchOptions& options, const BaseTask& base, const std::string& content,
               const std::vector<double>& whole) {
@@ -44,6 +39,8 @@ Json asked_of(const SearchOptions& options, const BaseTask& base, const std::str
   if (options.method == Method::kWorst || options.method == Method::kAxes)
     asked["budget"] = options.budget ? Json(*options.budget) : Json(nullptr);
   if (options.method == Method::kMinimal) asked["case"] = json_of(base.space(), whole);
+  if (options.method == Method::kWorst && options.run.shards > 1)
+    asked[kShardKey] = fmt::format("{}/{}", options.run.shard, options.run.shards);
   return asked;
 }
 
@@ -62,6 +59,13 @@ Result<Json> read_json(const std::string& folder) {
   const Json* const asked = json.find("asked");
   if (asked == nullptr || !asked->is_object())
     return Failure{Fault::kStore, "it does not say what was asked (`asked`)", file_of(folder)};
+  for (const char* const key : {"method", "task", "space", "text_sha256"}) {
+    const Json* const value = asked->find(key);
+    if (value == nullptr || !value->is_string())
+      return Failure{Fault::kStore,
+                     "it does not say what was asked (`asked." + std::string(key) + "`)",
+                     file_of(folder)};
+  }
   return json;
 }
 
@@ -84,9 +88,20 @@ Status check_folder(const std::string& folder, const Json& asked) {
     return Failure{Fault::kUsage, "the folder is there and is no search's: choose another", folder};
   }
   PROBE_ASSIGN(const Json there, read_json(folder));
+  const Json& before_asked = there.at("asked");
+  if (before_asked.contains("shards"))
+    return Failure{Fault::kUsage,
+                   "the folder holds shards that were joined: `search show` tells what they found, "
+                   "another search has another folder",
+                   folder};
   if (!has_episodes(folder)) return {};
+  if (before_asked.contains(kShardKey) && !asked.contains(kShardKey))
+    return Failure{Fault::kUsage,
+                   "the folder holds shard " + before_asked.value(kShardKey, "") +
+                       " of a search: --shard goes on with it, another search has another folder",
+                   folder};
   for (const auto& [key, value] : asked.items()) {
-    const Json* const before = there.at("asked").find(key);
+    const Json* const before = before_asked.find(key);
     if (before != nullptr && *before == value) continue;
     if (key == "text_sha256")
       return Failure{Fault::kUsage,
@@ -111,12 +126,14 @@ Status check_options(const SearchOptions& options) {
     return refused("expected more than 0 % and at most 50 %", "--error");
   if (options.budget && (*options.budget < 1 || *options.budget > 1'000'000))
     return refused("expected 1 to 1,000,000 trials", "--budget");
-  if (options.run.shards > 1 &&
-      (options.method == Method::kWorst || options.method == Method::kMinimal))
+  if (options.run.shards > 1 && options.method == Method::kMinimal)
     return refused(
-        "what this method asks next depends on all that it asked before: only boundary and "
-        "axes can be shared out; --jobs runs several episodes at once",
+        "what `minimal` asks next depends on all that it asked before, so it is not shared out: "
+        "each --case can be a call of its own, and --jobs runs several episodes at once",
         "--shard");
+  if (options.run.shards > kMostWorstShards && options.method == Method::kWorst)
+    return refused(fmt::format("a search for the worst has {} shards at most", kMostWorstShards),
+                   "--shard");
   return {};
 }
 
@@ -153,13 +170,14 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
                       {"file", absolute_path(options.text.file)},
                       {"done", false}};
   if (!is_there(file_of(options.run.out)) || !has_episodes(options.run.out))
-    PROBE_TRY(write_json(file_of(options.run.out), summary.findings));
+    PROBE_TRY(write_search(options.run.out, summary.findings));
   Hunt hunt{options, *base, summary, StoredPoints(*base), nullptr, "", 0, std::move(whole), {}, {}};
   constexpr Status (*kSearch[])(Hunt&) = {search_boundary, search_worst, search_minimal,
                                           search_axes};
   PROBE_TRY(kSearch[static_cast<std::size_t>(options.method)](hunt));
   Json& found = summary.findings;
-  if (options.run.shards > 1) {
+  // Of the worst a shard is a search of its own.
+  if (options.run.shards > 1 && options.method != Method::kWorst) {
     summary.is_done = false;
     summary.lines = {
         fmt::format("shard {} of {} has run; `vlaprobe merge` joins the folders, and the same "
@@ -190,8 +208,13 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   Json lines = Json::array();
   for (const std::string& line : summary.lines) lines.push_back(line);
   found["lines"] = std::move(lines);
-  PROBE_TRY(write_json(file_of(options.run.out), found));
+  PROBE_TRY(write_search(options.run.out, found));
   return summary;
+}
+
+Status write_search(const std::string& folder, const Json& findings) {
+  const std::string text = findings.dump(1) + "\n";
+  return write_file(file_of(folder), std::as_bytes(std::span(text.data(), text.size())));
 }
 
 bool is_search(const std::string& folder) { return is_file(file_of(folder)); }

@@ -52,9 +52,14 @@ struct SearchSummary {
 // where another ended, with what is stored.
 Result<SearchSummary> search(const SearchOptions& options, std::string& said);
 
+// What is asked of one shard of a search for the worst: "2/4".
+inline constexpr std::string_view kShardKey = "shard";
+
 // Whether the folder is one of a search.
 bool is_search(const std::string& folder);
 // What a folder's search has found so far. Fails (kStore) where there is none.
 Result<SearchSummary> read_search(const std::string& folder);
+// DIR/search.json. Fails (kIo).
+Status write_search(const std::string& folder, const Json& findings);
 
 }  // namespace probe::search

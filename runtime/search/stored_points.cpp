@@ -17,15 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view kPlanName = "points.plan", kJsonName = "points.json";
+
 constexpr const char* kRoundFormat = "vlaprobe search round";
 constexpr int kRoundVersion = 1;
 
-std::string plan_of(const std::string& folder) {
-  return (fs::path(folder) / "points.plan").string();
-}
-std::string table_of(const std::string& folder) {
-  return (fs::path(folder) / "points.json").string();
-}
+std::string plan_of(const std::string& folder) { return (fs::path(folder) / kPlanName).string(); }
+std::string table_of(const std::string& folder) { return (fs::path(folder) / kJsonName).string(); }
 
 Json numbers(std::span<const std::uint32_t> values) {
   Json out = Json::array();
@@ -74,6 +72,8 @@ bool read_stored(const Json& json, const plan::Plan& plan, std::size_t base_star
 std::string points_hash(const Json& json) { return to_hex(sha256(json.dump())); }
 
 }  // namespace
+
+bool is_stored_point_file(std::string_view name) { return name == kPlanName || name == kJsonName; }
 
 std::string StoredPoints::key_of(std::span<const PlannedPoint> points) const {
   Hasher hasher;

@@ -6,6 +6,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "runtime/search/points_file.h"
@@ -33,5 +34,8 @@ class StoredPoints {
   const BaseTask& base_;
   std::set<std::pair<std::string, std::string>> same_;  // paths and hashes of files that are so
 };
+
+// Names of what `keep` writes: of one program and one place, so of no use in another.
+bool is_stored_point_file(std::string_view name);
 
 }  // namespace probe::search

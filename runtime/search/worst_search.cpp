@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
+#include "runtime/base/hash_number.h"
+#include "runtime/base/sha256.h"
 #include "runtime/search/hunt.h"
 #include "runtime/search/method/confirm.h"
 #include "runtime/search/method/worst.h"
@@ -14,16 +17,30 @@ namespace {
 
 // Seeds of what confirms: none that the search has had.
 constexpr int kFreshSeeds = 100'000'000;
+// Of a shard: so many that no two have one, as many as are below kFreshSeeds.
+constexpr int kSeedsOfShard = 2'000'000;
+static_assert(kSeedsOfShard * (kMostWorstShards + 1) < kFreshSeeds);
 // Trials behind the rounds: a second look at 15 cases, then 5 of them and the task itself again.
 constexpr int kEndTrials = 15 * 8 + 5 * 40 + 60;
+
+// Draws of a shard, which depend on the seed of the search.
+std::uint64_t seed_of_shard(std::uint64_t seed, int shard, int shards) {
+  if (shards == 1) return seed;
+  Hasher hasher;
+  hasher.text("worst shard").u64(seed).u64(static_cast<std::uint64_t>(shard));
+  return little_endian_number(hasher.finish());
+}
 
 }  // namespace
 
 Status search_worst(Hunt& hunt) {
+  const int shard = hunt.options.run.shard, shards = hunt.options.run.shards;
+  const std::string of_shard = shards > 1 ? fmt::format(" {} of {}", shard, shards) : "";
+  const int first_seed = shards > 1 ? shard * kSeedsOfShard : 0;
   const sema::Space& space = hunt.space();
   const Space axes = method_space(space);
   WorstOptions options;
-  options.seed = hunt.options.seed;
+  options.seed = seed_of_shard(hunt.options.seed, shard, shards);
   if (hunt.options.budget) {
     const int round = options.points * options.repeats;
     if (*hunt.options.budget < kEndTrials + 2 * round)
@@ -38,7 +55,7 @@ Status search_worst(Hunt& hunt) {
   Worst worst(axes, options);
   PROBE_TRY(hunt.try_points({[&] { return worst.done(); }, [&] { return worst.ask(); },
                              [&](std::span<const Outcome> told) { worst.tell(told); }},
-                            "worst"));
+                            "worst" + of_shard, first_seed));
   const std::vector<Candidate> candidates = worst.candidates();
   SearchSummary& summary = hunt.summary;
   Json cases = Json::array();
@@ -48,10 +65,12 @@ Status search_worst(Hunt& hunt) {
         worst.trials()));
   } else {
     hunt.tell(fmt::format("{} cases to be confirmed", candidates.size()));
-    Confirm confirm(axes, points_of(candidates), {});
+    ConfirmOptions confirming;
+    confirming.error /= shards;
+    Confirm confirm(axes, points_of(candidates), confirming);
     PROBE_TRY(hunt.try_points({[&] { return confirm.done(); }, [&] { return confirm.ask(); },
                                [&](std::span<const Outcome> told) { confirm.tell(told); }},
-                              "confirm", kFreshSeeds));
+                              "confirm" + of_shard, kFreshSeeds + first_seed));
     const Confirmation found = confirm.confirmation();
     summary.findings["own_failures"] = json_of(found.own);
     summary.findings["rate"] = found.rate;
@@ -93,6 +112,29 @@ Status search_worst(Hunt& hunt) {
   }
   summary.findings["cases"] = std::move(cases);
   return {};
+}
+
+Status keep_found(const Json& findings, const std::string& folder) {
+  const Json& asked = findings.at("asked");
+  TextOptions text;
+  text.file = findings.value("file", "");
+  text.space = asked.value("space", "");
+  std::string said;
+  PROBE_ASSIGN(const std::unique_ptr<BaseTask> base, BaseTask::open(text, said));
+  if (base->hash() != asked.value("text_sha256", ""))
+    return Failure{Fault::kUsage, "the text has changed since the search", text.file};
+  std::vector<space::Point> points;
+  std::vector<std::string> remarks;
+  for (const Json& one : findings.at("cases")) {
+    const Json* const confirmed = one.find("confirmed");
+    if (confirmed == nullptr || !confirmed->is_boolean() || !confirmed->get<bool>()) continue;
+    PROBE_ASSIGN(Case found, read_case(base->space(), one, folder));
+    points.push_back({one.value("name", ""), std::move(found.values), *found.draw, {}});
+    remarks.push_back("# " + one.value("sentence", "") + "\n");
+  }
+  if (points.empty()) return {};
+  return write_found(*base, points, remarks,
+                     (std::filesystem::path(folder) / "found.probe").string());
 }
 
 }  // namespace probe::search

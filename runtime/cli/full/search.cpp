@@ -116,8 +116,9 @@ void add_search(Verb app, int& exit) {
   verb.add_option("--at", arguments->at, "of minimal: the case, as \"light.power 0.3, clutter 2\"");
   verb.add_flag("--unproved", arguments->unproved,
                 "do not ask the expert whether what is tried can be done");
-  verb.add_option("--shard", arguments->shard,
-                  "I/N: this call's share of a boundary's sides or of the axes' trials");
+  verb.add_option(
+      "--shard", arguments->shard,
+      "I/N: of a boundary's sides or the axes' trials a share; of worst one of N searches");
   verb.add_option("--jobs", arguments->jobs, "worlds in parallel").between(1, 1024);
   verb.add_option("--retries", arguments->retries,
                   "times an episode is tried again that a server spoiled (2)")

@@ -21,6 +21,8 @@ constexpr double kTied = 0.01;
 
 constexpr double kMostPermutations = 1e7;
 
+constexpr int kTrialsOfPart = 5;
+
 // Of each of `tests` tests. The smallest p value of n permutations is 1 / (n + 1), which Holm takes
 // `tests` times; tests that are null end long before (Besag and Clifford), so many cost little.
 int permutations_of(std::size_t tests, const AxesOptions& options) {
@@ -33,7 +35,7 @@ class Analysis {
  public:
   Analysis(const Space& space, const AxesOptions& options, std::span<const Point> points,
            std::span<const Outcome> outcomes)
-      : options_(options), axis_count_(space.size()) {
+      : options_(options), axis_count_(space.size()), least_(Axes::least_trials(space)) {
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
       if (outcomes[i] == Outcome::kLeftOut) {
         ++left_out_;
@@ -54,6 +56,7 @@ class Analysis {
     found.left_out = left_out_;
     found.failures = {static_cast<std::int64_t>(all_.size() - successes_.size()),
                       static_cast<std::int64_t>(all_.size())};
+    if (found.failures.n < least_) return nothing_said(std::move(found));
     test_axes(found);
     test_pairs(found);
     if (!all_.empty()) share_out(found);
@@ -61,6 +64,21 @@ class Analysis {
   }
 
  private:
+  AxesFinding nothing_said(AxesFinding found) const {
+    found.too_few = true;
+    found.axes.resize(axis_count_);
+    for (std::size_t a = 0; a < axis_count_; ++a) {
+      for (std::size_t b = a + 1; b < axis_count_; ++b) {
+        PairEffect pair;
+        pair.a = a;
+        pair.b = b;
+        pair.tested = false;
+        found.pairs.push_back(pair);
+      }
+    }
+    return found;
+  }
+
   // Points that were left out may tie axes to one another. What such an axis does is then looked at
   // where the axes that it is tied to are in one part.
   void find_ties() {
@@ -189,6 +207,7 @@ class Analysis {
 
   const AxesOptions& options_;
   std::size_t axis_count_;
+  int least_;
   int left_out_ = 0;
   std::vector<Point> counted_;
   std::vector<std::uint8_t> failed_;          // a counted point
@@ -208,6 +227,12 @@ Axes::Axes(Space space, const AxesOptions& options) : space_(std::move(space)), 
                 "a count or a choice has 1 to 255 values");
   }
   points_ = latin_hypercube(space_, static_cast<std::size_t>(options.points), options.seed, "axes");
+}
+
+int Axes::least_trials(const Space& space) {
+  int most = 0;
+  for (const Axis& axis : space) most = std::max(most, part_count(axis));
+  return kTrialsOfPart * most;
 }
 
 std::span<const Point> Axes::ask() const {

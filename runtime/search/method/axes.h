@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -63,7 +64,9 @@ struct PairEffect {
   // The corner that fails most and failures there, and with one of its sides or none.
   Side side_a, side_b;
   stats::Count both, only_a, only_b, neither;
-  double share = 0;  // of the outcome's variance, beyond what the two explain alone
+  // Of the outcome's variance, beyond what the two explain alone; none where there are fewer than
+  // two trials to a cell of their parts.
+  std::optional<double> share = std::nullopt;
   // Points that were left out tie the two axes to one another, so nothing can be said: not tested.
   bool tested = true;
 };
@@ -71,6 +74,8 @@ struct PairEffect {
 struct AxesFinding {
   stats::Count failures;
   int left_out = 0;
+  // Fewer trials count than least_trials: axes and pairs are there, and nothing is said of them.
+  bool too_few = false;
   std::vector<AxisEffect> axes;   // in the order of the space
   std::vector<PairEffect> pairs;  // (0,1), (0,2), .., (1,2), ..
 };
@@ -90,6 +95,10 @@ struct AxesFinding {
 class Axes {
  public:
   Axes(Space space, const AxesOptions& options);
+
+  // Trials without which nothing is said: five to a part of the axis that has most of them. With
+  // one to a part the parts "explain" whatever happened.
+  static int least_trials(const Space& space);
 
   bool done() const { return told_ == points_.size(); }
   std::span<const Point> ask() const;

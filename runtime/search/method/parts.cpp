@@ -24,12 +24,15 @@ bool Side::holds(double x) const {
   return false;
 }
 
+int part_count(const Axis& axis) {
+  if (axis.kind == AxisKind::kContinuous) return kParts;
+  return axis.kind == AxisKind::kChoice ? axis.size : std::min(axis.size, kParts);
+}
+
 Parts parts_of(const Axis& axis, std::span<const Point> points, std::size_t at) {
   Parts parts;
   const bool is_choice = axis.kind == AxisKind::kChoice;
-  parts.count = axis.kind == AxisKind::kContinuous ? kParts
-                : is_choice                        ? axis.size
-                                                   : std::min(axis.size, kParts);
+  parts.count = part_count(axis);
   const double width = axis.kind == AxisKind::kContinuous
                            ? 1.0 / kParts
                            : static_cast<double>(axis.size) / parts.count;

@@ -24,6 +24,8 @@ struct Parts {
 // Axis number `at` of `points`: continuous axes in eight equal parts, counts in eight at most,
 // choices in their options.
 Parts parts_of(const Axis& axis, std::span<const Point> points, std::size_t at);
+// How many that are.
+int part_count(const Axis& axis);
 
 Side other_side(Side side);
 

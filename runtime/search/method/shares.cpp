@@ -12,12 +12,12 @@ namespace {
 // May lie a little outside of 0..1.
 struct Estimates {
   std::vector<double> first;  // an axis
-  std::vector<double> pair;
+  std::vector<std::optional<double>> pair;
 
   double total(std::size_t axis, const std::vector<AxisPair>& pairs) const {
     double sum = first[axis];
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (pairs[i].first == axis || pairs[i].second == axis) sum += pair[i];
+      if (pairs[i].first == axis || pairs[i].second == axis) sum += pair[i].value_or(0);
     }
     return sum;
   }
@@ -73,6 +73,11 @@ Estimates estimate(const std::vector<Parts>& parts, const std::vector<AxisPair>&
       in_n[cell] += 1;
     }
     const Between both = between(in_k, in_n, rate);
+    // Cells of a trial each explain everything.
+    if (2 * both.groups > n) {
+      shares.pair.emplace_back();
+      continue;
+    }
     const double within = (total - both.squares) / std::max(n - both.groups, 1.0);
     const double joint = (both.squares - (both.groups - 1) * within) / std::max(total, 1e-300);
     shares.pair.push_back(total > 0 ? joint - shares.first[a] - shares.first[b] : 0);
@@ -121,7 +126,8 @@ Shares shares_of(const std::vector<Parts>& parts, const std::vector<AxisPair>& p
                            .first_interval = interval_of(std::move(first[a]), found.first[a]),
                            .total_interval = interval_of(std::move(total[a]), of_both)});
   }
-  for (const double share : found.pair) shares.pairs.push_back(in_unit(share));
+  for (const std::optional<double>& share : found.pair)
+    shares.pairs.push_back(share ? std::optional(in_unit(*share)) : std::nullopt);
   return shares;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct AxisShares {
 
 struct Shares {
   std::vector<AxisShares> axes;
-  std::vector<double> pairs;  // beyond what the two explain alone, 0..1
+  // Beyond what the two explain alone, 0..1; none where there are fewer than two trials to a cell.
+  std::vector<std::optional<double>> pairs;
 };
 
 // Of axes that are cut into `parts`: Sobol's indices of first order by epsilon squared (Kelley

@@ -307,8 +307,10 @@ TEST_CASE("a mesh is packed with its scale, its texture and a collision shape of
              "1 convex part, 1 x 2 x 3 cm; box (-0.5cm, -1cm, -1.5cm) .. (0.5cm, 1cm, 1.5cm)"));
   const auto check = AssetCheck::open(folder / "my");
   REQUIRE(check.ok());
-  CHECK((*check)(folder / "my", "objects/mug/visual.glb", plan::AssetKind::kVisualMesh, nullptr).ok());
-  CHECK((*check)(folder / "my", "objects/mug/collision.obj", plan::AssetKind::kCollisionMesh, nullptr).ok());
+  const Sha256 none = sha256(std::string_view(""));
+  CHECK((*check)(folder / "my", "objects/mug/visual.glb", plan::AssetKind::kVisualMesh, none).ok());
+  CHECK((*check)(folder / "my", "objects/mug/collision.obj", plan::AssetKind::kCollisionMesh, none)
+            .ok());
   CHECK_FALSE(pack_asset({dae, folder / "my/objects/other", "", 0}).ok());
   fs::remove(folder / "mug/wood.png");
   CHECK(says(to_text(pack_asset({dae, folder / "my/objects/cup", "", 1}).failure()), "wood.png"));
@@ -320,18 +322,19 @@ TEST_CASE("what the manifest vouches for is not read again, whatever else is") {
   write_text((folder / "a/") + path, "not a mesh");
   auto check = AssetCheck::open(folder / "a");
   REQUIRE(check.ok());
-  const Status bad = (*check)(folder / "a", path, plan::AssetKind::kVisualMesh, nullptr);
+  const Sha256 own = sha256(std::string_view("not a mesh"));
+  const Status bad = (*check)(folder / "a", path, plan::AssetKind::kVisualMesh, own);
   REQUIRE_FALSE(bad.ok());
   CHECK(bad.failure().where == path);
 
   Manifest manifest;
-  manifest.files[path] = {10, to_hex(sha256(std::string_view("not a mesh"))), ""};
+  manifest.files[path] = {10, to_hex(own), ""};
   write_text(folder / "a/manifest.json", manifest.to_json());
   check = AssetCheck::open(folder / "a");
   REQUIRE(check.ok());
-  CHECK((*check)(folder / "a", path, plan::AssetKind::kVisualMesh, nullptr).ok());
+  CHECK((*check)(folder / "a", path, plan::AssetKind::kVisualMesh, own).ok());
   const Sha256 other = sha256(std::string_view("not a mask"));
-  CHECK_FALSE((*check)(folder / "a", path, plan::AssetKind::kVisualMesh, &other).ok());
+  CHECK_FALSE((*check)(folder / "a", path, plan::AssetKind::kVisualMesh, other).ok());
 
   write_text(folder / "a/manifest.json", "{\"files\":[{\"path\":3}]}");
   CHECK_FALSE(AssetCheck::open(folder / "a").ok());

@@ -117,6 +117,20 @@ TEST_CASE("a mesh that is not there is an error at the object that names it") {
   CHECK(contains(outcome.err, "suite/catalog.probe:"));
 }
 
+TEST_CASE("a mesh that changed and kept its size is refused by every way to check") {
+  Sandbox box;
+  copy_assets(box);
+  std::string bytes = read_file(box / "assets/objects/carrot/visual.glb");
+  bytes.replace(0, 4, "none");
+  write_file(box / "assets/objects/carrot/visual.glb", bytes);
+  for (const char* const flag : {"", " --json"}) {
+    const Outcome outcome = box.vlaprobe("check $SUITE --assets assets" + std::string(flag));
+    CAPTURE(flag);
+    CHECK(outcome.exit == 1);
+    CHECK(contains(outcome.out + outcome.err, "is no binary glTF"));
+  }
+}
+
 TEST_CASE("a mesh that vanished or changed after the plan was built stops the run") {
   Sandbox box;
   copy_assets(box);

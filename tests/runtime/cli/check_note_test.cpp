@@ -32,6 +32,18 @@ TEST_CASE("check names the tasks for which the expert finds no skills, and what 
   CHECK_FALSE(contains(box.vlaprobe("check $SUITE").err, "finds no skills"));
 }
 
+TEST_CASE("a task that several texts use is named once, and one that is not chosen is not") {
+  const Sandbox box;
+  write_file(box / "common.probe", kRaised);
+  write_file(box / "a.probe",
+             "use \"common.probe\"\nsuite a trained on bridge_v2 { tasks { raised }; seeds 1 }\n");
+  write_file(box / "b.probe",
+             "use \"common.probe\"\nsuite b trained on bridge_v2 { tasks { raised }; seeds 1 }\n");
+  const Outcome both = box.vlaprobe("check a.probe b.probe");
+  CHECK_MESSAGE(contains(both.err, "no skills for 2 of 106 tasks: `raised`, `raised_too`;"),
+                both.err);
+}
+
 TEST_CASE("check says nothing of skills while a text has mistakes") {
   const Sandbox box;
   write_file(box / "raised.probe", kRaised + "task wrong like raised { horizon 0 steps }\n");

@@ -185,6 +185,28 @@ TEST_CASE(
   CHECK(why.findings.at("smallest").contains("clutter"));
 }
 
+TEST_CASE("a damaged search.json is refused with what it lacks") {
+  Search search(Method::kMinimal, "light power 0.5 .. 2", "null");
+  search.options.from = search.text->folder / "from";
+  std::filesystem::create_directories(search.options.from);
+  const auto says = [&](const std::string& asked, const char* what) {
+    std::ofstream(search.options.from + "/search.json")
+        << R"({"format":"vlaprobe search","version":1,"asked":)" + asked + R"(,"cases":[{}]})";
+    CAPTURE(asked);
+    CHECK_MESSAGE(search.refused().message.find(what) != std::string::npos,
+                  to_text(search.refused()));
+  };
+  says("{}", "`asked.method`");
+  says(R"({"method":"worst","task":"carrot_on_plate","space":"around","text_sha256":7})",
+       "`asked.text_sha256`");
+  std::string said;
+  const auto base = BaseTask::open(search.options.text, said);
+  REQUIRE(base.ok());
+  says(R"({"method":"worst","task":"carrot_on_plate","space":"around","text_sha256":")" +
+           (*base)->hash() + "\"}",
+       "does not say what it changes");
+}
+
 TEST_CASE("a point that is asked for by hand is one of the space, or refused with what it has") {
   Search search(Method::kMinimal, "light power 0.5 .. 2\nwords templates of put", "expert");
   const auto says = [&](const char* at, const char* what) {
@@ -214,28 +236,31 @@ TEST_CASE("a suite, a path and a folder of odd names are no hindrance") {
                                             search.text->folder / "link");
   search.options.text.file = odd + "/points.probe";
   search.options.run.out = search.text->folder / "link/search";
-  search.options.budget = 8;
+  search.options.budget = 40;
   const SearchSummary found = search.find();
   REQUIRE_FALSE(found.lines.empty());
   CHECK(found.lines.back() == "all that were tried end alike, so there is nothing to compare");
   // Another budget draws other points.
-  search.options.budget = 9;
-  CHECK(search.refused().message.find("another budget (8, now 9)") != std::string::npos);
+  search.options.budget = 41;
+  CHECK(search.refused().message.find("another budget (40, now 41)") != std::string::npos);
 }
 
 TEST_CASE("a task whose camera moves is searched over the starts that stay in its picture") {
   Search search(Method::kAxes,
                 "camera third_view within (0cm, 0cm, 30cm), 20deg\nplace source in disc 12cm",
                 "null");
-  search.options.budget = 24;
+  search.options.budget = 40;
   const SearchSummary found = search.find();
-  CHECK(found.trials == 24);
+  CHECK(found.trials == 40);
 }
 
 TEST_CASE("recorded actions, and a budget that a method cannot do with, are refused") {
   Search search(Method::kWorst, "light ambient 0.2 .. 0.4", "null");
   search.options.budget = 100;
   CHECK(search.refused().message.find("takes 540 trials at least") != std::string::npos);
+  search.options.method = Method::kAxes;
+  search.options.budget = 39;
+  CHECK(search.refused().message.find("takes 40 trials at least") != std::string::npos);
 }
 
 TEST_CASE("shards of a search that are merged tell what one call tells, and run nothing more") {
@@ -246,7 +271,8 @@ TEST_CASE("shards of a search that are merged tell what one call tells, and run 
   for (const int shard : {1, 2}) {
     search.options.run.shard = shard;
     search.options.run.shards = 2;
-    search.options.run.out = out + "-" + std::to_string(shard);
+    // Where a folder lies is no matter.
+    search.options.run.out = shard == 1 ? out + "-1" : out + "-deep/er/2";
     CHECK_FALSE(search.find().is_done);
     merging.dirs.push_back(search.options.run.out);
   }
@@ -257,9 +283,58 @@ TEST_CASE("shards of a search that are merged tell what one call tells, and run 
   const SearchSummary again = search.find();
   CHECK(again.ran == 0);
   CHECK(again.lines == whole.lines);
-  search.options.method = Method::kWorst;
+  search.options.method = Method::kMinimal;
+  search.options.at = "light.ambient 0.2";
   search.options.run.shards = 2;
   CHECK(search.refused().where == "--shard");
+}
+
+TEST_CASE("shards of a search for the worst are searches of their own, joined when they are done") {
+  Search search(Method::kWorst, "light ambient 0.05 .. 0.6", "weak:ambient<0.17");
+  search.options.proves = false;
+  search.options.budget = 540;
+  const std::string out = search.options.run.out;
+  store::MergeOptions merging;
+  std::vector<SearchSummary> found;
+  for (const int shard : {1, 2}) {
+    search.options.run.shard = shard;
+    search.options.run.shards = 2;
+    search.options.run.out = out + "-" + std::to_string(shard);
+    merging.dirs.push_back(search.options.run.out);
+    found.push_back(search.find());
+    CHECK(found.back().is_done);
+  }
+  CHECK(found[0].findings.at("cases") != found[1].findings.at("cases"));
+  // Another shard, none, or the joined folder are not gone on with.
+  search.options.run.shard = 1;
+  CHECK(search.refused().message.find("another shard (\"2/2\", now \"1/2\")") != std::string::npos);
+  search.options.run.shards = 1;
+  CHECK(search.refused().message.find("holds shard 2/2") != std::string::npos);
+  merging.out = search.options.run.out = search.text->folder / "deep/all";
+  const auto merged = merge_searches(merging);
+  REQUIRE_MESSAGE(merged.ok(), to_text(merged.failure()));
+  CHECK(search.refused().message.find("holds shards that were joined") != std::string::npos);
+  const SearchSummary all = read_search(merging.out).value();
+  CHECK(all.trials == found[0].trials + found[1].trials);
+  CHECK(all.lines.size() == all.findings.at("cases").size());
+  CHECK(all.findings.at("own_failures")[1].get<int>() == 120);
+  CHECK(is_there(merging.out + "/rounds/2-001/points.csv"));
+  const std::string text = read_file(merging.out + "/found.probe").value();
+  for (const Json& one : all.findings.at("cases")) {
+    CHECK_MESSAGE(one.at("confirmed").get<bool>(), all.lines);
+    CHECK(text.find(one.value("name", "none")) != std::string::npos);
+  }
+  const std::string round = read_file(merging.out + "/rounds/1-001/points.probe").value();
+  CHECK(round.find("\nuse \"../../../../") != std::string::npos);
+  // Its cases are taken up from there.
+  search.options.method = Method::kMinimal;
+  search.options.from = merging.out;
+  search.options.run.out = out + "-why";
+  search.options.budget.reset();
+  const SearchSummary why = search.find();
+  const Json* const smallest = why.findings.find("smallest");
+  REQUIRE_MESSAGE(smallest != nullptr, why.lines.front());
+  CHECK(smallest->contains("light.ambient"));
 }
 
 TEST_CASE(

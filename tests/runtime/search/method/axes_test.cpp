@@ -132,7 +132,12 @@ TEST_CASE("policies that always or never fail, few points and no points have fin
     for (const AxisEffect& axis : found.axes) CHECK(!axis.matters);
     CHECK(named_of(found).empty());
   }
-  CHECK(named_of(found_of(coin, 1, {.points = 3})).empty());
+  // Of one trial to a part the parts would explain everything.
+  CHECK(Axes::least_trials(kSpace) == 40);
+  const AxesFinding few = found_of(dark_or_far, 1, {.points = 39});
+  CHECK(few.too_few);
+  for (const AxisEffect& axis : few.axes) CHECK(axis.first == 0);
+  CHECK_FALSE(found_of(dark_or_far, 1, {.points = 40}).too_few);
   CHECK(Axes(kSpace, {.points = 0}).finding().axes.size() == kSpace.size());
   CHECK(Axes({}, {.points = 10}).finding().axes.empty());
 }
