@@ -19,6 +19,7 @@
 #include "runtime/base/file.h"
 #include "runtime/scene/glb_writer.h"
 #include "runtime/scene/image.h"
+#include "runtime/scene/photo_shape.h"
 
 namespace probe::assets {
 namespace {
@@ -210,28 +211,35 @@ class Import {
 
   // ---- scenes
 
+  struct Photo {
+    std::string bytes;  // as in its file
+    scene::ImageSize size;
+  };
+  // Decodes all of it: one that is cut off is told now, and not by a run.
+  static Result<Photo> read_photo(const fs::path& path) {
+    PROBE_ASSIGN(std::string bytes, read_file(path.string()));
+    PROBE_ASSIGN(const scene::Texture texture,
+                 scene::decode_image(std::as_bytes(std::span(bytes)), path.string()));
+    return Photo{std::move(bytes), {texture.width, texture.height}};
+  }
+
   Status add_scene(const KnownScene& scene) {
     const std::string name = "scenes/" + std::string(scene.name);
     const auto photo = data_.photos.find(std::string(scene.photo));
     const auto stage = data_.stages.find(std::string(scene.stage));
     std::vector<std::string> taken, odd;
     if (photo != data_.photos.end()) {
-      auto bytes = read_file(photo->second.string());
-      auto texture =
-          bytes ? scene::decode_image(std::as_bytes(std::span(*bytes)), photo->second.string())
-                : Result<scene::Texture>(bytes.failure());
-      if (!texture) return miss(name, short_text(texture.failure(), options_.from));
+      const auto read = read_photo(photo->second);
+      if (!read) return miss(name, short_text(read.failure(), options_.from));
       const std::string extension = lower_extension(photo->second);
-      PROBE_TRY(write(name + "/photo" + extension, *bytes, relative(photo->second)));
-      taken.push_back(
-          fmt::format("photo {}, {} x {}", scene.photo, texture->width, texture->height));
-      if (texture->width != 640 || texture->height != 480) {
-        // The same rule as where the photo is shown, a hundredth of the shape.
-        const bool same_shape =
-            std::abs(3 * texture->width - 4 * texture->height) <= 0.03 * texture->width;
-        odd.push_back(same_shape ? "the camera's picture is 640 x 480: the photo is scaled to it"
-                                 : "the camera's picture is 640 x 480: this photo has another "
-                                   "shape and must be cut before it is shown");
+      PROBE_TRY(write(name + "/photo" + extension, read->bytes, relative(photo->second)));
+      const scene::ImageSize size = read->size;
+      taken.push_back(fmt::format("photo {}, {} x {}", scene.photo, size.width, size.height));
+      if (const auto defect = scene::photo_defect(size, kBridgeWidth, kBridgeHeight)) {
+        odd.push_back(*defect);
+      } else if (size.width != kBridgeWidth || size.height != kBridgeHeight) {
+        odd.push_back(fmt::format("the camera's picture is {} x {}: the photo is scaled to it",
+                                  kBridgeWidth, kBridgeHeight));
       }
     } else {
       odd.push_back("no photo " + std::string(scene.photo));
@@ -261,21 +269,12 @@ class Import {
     const std::string name = "scenes/google/" + file;
     const auto photo = data_.photos.find(file);
     if (photo == data_.photos.end()) return miss(name, "no photo " + file);
-    auto bytes = read_file(photo->second.string());
-    auto texture =
-        bytes ? scene::decode_image(std::as_bytes(std::span(*bytes)), photo->second.string())
-              : Result<scene::Texture>(bytes.failure());
-    if (!texture) return miss(name, short_text(texture.failure(), options_.from));
-    const std::string size = fmt::format("{} x {}", texture->width, texture->height);
-    // The same rule as where the photo is shown, a hundredth of the shape.
-    if (std::abs(kGoogleHeight * texture->width - kGoogleWidth * texture->height) >
-        0.01 * kGoogleHeight * texture->width) {
-      return miss(name, fmt::format("photo {} is {}, and the camera's picture {} x {}: one of another "
-                                    "shape must be cut first",
-                                    file, size, kGoogleWidth, kGoogleHeight));
-    }
-    PROBE_TRY(write(name, *bytes, relative(photo->second)));
-    say(Verdict::kTaken, name, size);
+    const auto read = read_photo(photo->second);
+    if (!read) return miss(name, short_text(read.failure(), options_.from));
+    if (const auto defect = scene::photo_defect(read->size, kGoogleWidth, kGoogleHeight))
+      return miss(name, *defect);
+    PROBE_TRY(write(name, read->bytes, relative(photo->second)));
+    say(Verdict::kTaken, name, fmt::format("{} x {}", read->size.width, read->size.height));
     return {};
   }
 

@@ -68,6 +68,7 @@ inline constexpr std::array kKnownScenes{
     KnownScene{"table", "bridge_real_eval_1.png", "bridge_table_1_v1.glb"},
     KnownScene{"sink", "bridge_sink.png", "bridge_table_1_v2.glb"},
 };
+inline constexpr int kBridgeWidth = 640, kBridgeHeight = 480;  // of the camera's picture, pixels
 
 // Pictures that suite/google/photos.probe puts behind its scenes, below scenes/google. They are of
 // half the camera's size.
@@ -76,7 +77,7 @@ inline constexpr std::array<std::string_view, 11> kGooglePhotos{
     "open_drawer_a1.png",              "open_drawer_a2.png",               "open_drawer_b0.png",
     "open_drawer_b1.png",              "open_drawer_b2.png",               "open_drawer_c0.png",
     "open_drawer_c1.png",              "open_drawer_c2.png"};
-inline constexpr int kGoogleWidth = 640, kGoogleHeight = 512;  // of the camera
+inline constexpr int kGoogleWidth = 640, kGoogleHeight = 512;  // of the camera's picture, pixels
 
 // The Google robot and its colourings, below robots/google_released: descriptions in the release.
 struct KnownRobot {

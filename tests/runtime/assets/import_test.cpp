@@ -64,6 +64,9 @@ bool says(const std::string& text, const std::string& what) {
 TEST_CASE("a data folder becomes an asset folder with a line on everything") {
   TemporaryFolder folder;
   make_data(folder / "repo");
+  REQUIRE(scene::write_png(folder / "repo/data/real_inpainting/bridge_sink.png", 16, 10,
+                           std::vector<std::uint8_t>(480, 50))
+              .ok());
   const auto report = import_data({folder / "repo", folder / "out", ""});
   REQUIRE_MESSAGE(report.ok(), (report.ok() ? "" : to_text(report.failure())));
 
@@ -76,6 +79,7 @@ TEST_CASE("a data folder becomes an asset folder with a line on everything") {
   CHECK(says(line_of(*report, "objects/mug 2"), "in no model database"));
   CHECK(says(line_of(*report, "scenes/table"), "photo bridge_real_eval_1.png, 4 x 3"));
   CHECK(says(line_of(*report, "scenes/table"), "the photo is scaled"));
+  CHECK(says(line_of(*report, "scenes/sink"), "the photo is 16 x 10 pixels, the camera's picture"));
   CHECK(says(line_of(*report, "robots/widowx"), "missing no wx250s.urdf"));
   CHECK(says(line_of(*report, "database"), "`flat` has a box without size"));
 
@@ -139,6 +143,8 @@ void make_google_data(const std::string& root) {
   photo("open_drawer_a0.png", 320, 256);
   photo("open_drawer_a1.png", 640, 512);
   photo("open_drawer_b0.png", 320, 240);
+  photo("open_drawer_b1.png", 100, 81);
+  photo("open_drawer_c0.png", 1000, 792);
   const std::string description = root + "/descriptions/googlerobot_description/";
   const std::string stem = "google_robot_meta_sim_fix_wheel_fix_fingertip";
   const auto robot = [](const std::string& mesh) {
@@ -170,8 +176,12 @@ TEST_CASE("for the Google robot's suite: what is there under its names, what is 
   CHECK(line_of(*report, "scenes/google/open_drawer_a0.png") == "taken 320 x 256");
   CHECK(line_of(*report, "scenes/google/open_drawer_a1.png") == "taken 640 x 512");
   CHECK(says(line_of(*report, "scenes/google/open_drawer_b0.png"),
-             "missing photo open_drawer_b0.png is 320 x 240, and the camera's picture 640 x 512"));
+             "missing the photo is 320 x 240 pixels, the camera's picture 640 x 512: "));
   CHECK_FALSE(fs::exists(folder / "out/scenes/google/open_drawer_b0.png"));
+  // By the rule of those who show it: a pixel of rounding, and else a hundredth of the shape.
+  CHECK(line_of(*report, "scenes/google/open_drawer_b1.png") == "taken 100 x 81");
+  CHECK(says(line_of(*report, "scenes/google/open_drawer_c0.png"),
+             "missing the photo is 1000 x 792"));
   CHECK(says(line_of(*report, "scenes/google/open_drawer_c2.png"), "missing no photo"));
   // A colouring without its texture would be the plain robot.
   CHECK(says(line_of(*report, "robots/google_released/google_robot.urdf"), "1 mesh files"));
