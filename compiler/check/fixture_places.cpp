@@ -1,7 +1,7 @@
 // P1302 of a scene: parts of its fixtures that run into the surface, or into one another.
 #include <fmt/format.h>
 
-#include "compiler/check/part_boxes.h"
+#include "compiler/check/joint_text.h"
 #include "compiler/check/starts.h"
 
 namespace probe::sema {
@@ -14,7 +14,7 @@ void check_surface_below(const Scene& scene, const Fixture& fixture, const Trave
                          Reporter& reporter) {
   const PartBox* lowest_box = nullptr;
   double depth = kRubs;
-  for (const PartBox& box : travel.everywhere()) {
+  for (const PartBox& box : travel.everywhere().all()) {
     if (travel.carriers(box.part).empty()) continue;  // what stands still meets no surface
     const double below = scene.surface_z - (box.solid.centre.z() - box.half.z());
     if (below <= depth) continue;
@@ -26,7 +26,7 @@ void check_surface_below(const Scene& scene, const Fixture& fixture, const Trave
       .report(Code::P1302, fixture.span,
               fmt::format("`{}` runs {} into the surface of `{}`{}",
                           fixture.body_name(fixture.parts[lowest_box->part]), centimetres(depth),
-                          scene.name, when(fixture, travel, *lowest_box)))
+                          scene.name, when_joints_stand(fixture, travel, *lowest_box)))
       .label(scene.span, "the scene")
       .help("put the fixture higher");
 }
@@ -57,7 +57,7 @@ void check_neighbour(const Scene& scene, const Fixture& fixture, const Travel& t
   };
   const PartBox* against = nullptr;
   const bool at_start = worst(begun, &against).first != nullptr;
-  const auto [found, depth] = worst(at_start ? begun : travel.everywhere(), &against);
+  const auto [found, depth] = worst(at_start ? begun : travel.everywhere().all(), &against);
   if (found == nullptr || (at_start && !is_first)) return;
   const std::string names =
       fmt::format("`{}` and `{}` in `{}`", fixture.body_name(fixture.parts[found->part]),
@@ -66,7 +66,7 @@ void check_neighbour(const Scene& scene, const Fixture& fixture, const Travel& t
       Code::P1302, fixture.span,
       at_start ? fmt::format("{} stand in one another by {}", names, centimetres(depth))
                : fmt::format("{} meet: they overlap by {}{}", names, centimetres(depth),
-                             when(fixture, travel, *found)));
+                             when_joints_stand(fixture, travel, *found)));
   if (!at_start) said.severity = Severity::kWarning;
   said.label(other.span, "the other fixture").help("move one of them");
 }

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "compiler/check/part_boxes.h"
+#include "compiler/check/joint_text.h"
 #include "compiler/check/starts.h"
 #include "compiler/geometry/footprint.h"
 
@@ -21,9 +21,9 @@ struct Around {
     return (low.array() <= point.array()).all() && (point.array() <= high.array()).all();
   }
 };
-std::map<std::uint32_t, Around> around_parts(const std::vector<PartBox>& boxes) {
+std::map<std::uint32_t, Around> around_parts(const PartBoxes& boxes) {
   std::map<std::uint32_t, Around> parts;
-  for (const PartBox& box : boxes) {
+  for (const PartBox& box : boxes.all()) {
     const Vec3 low = box.solid.centre - box.half, high = box.solid.centre + box.half;
     const auto [known, is_new] = parts.try_emplace(box.part, Around{low, high});
     if (is_new) continue;
@@ -72,46 +72,32 @@ struct TravelCheck {
 
   // The deepest overlap of each start with any of the boxes as they stand there. What is put into a
   // part, at a height of its own, goes where the part goes: `carriers`, of a look at the whole way.
-  Found deepest(const std::vector<std::vector<PartBox>>& begun, Look look) const {
+  Found deepest(const std::vector<PartBoxes>& begun, Look look) const {
     std::vector<std::map<std::uint32_t, Around>> carried_by;
     if (look == Look::kWay) {
-      for (const std::vector<PartBox>& boxes : begun) carried_by.push_back(around_parts(boxes));
+      for (const PartBoxes& boxes : begun) carried_by.push_back(around_parts(boxes));
     } else {
       carried_by.resize(1);
-    }
-    std::vector<std::vector<BoxRun>> runs;
-    if (look == Look::kWay) {
-      runs.push_back(runs_of(travel.everywhere()));
-    } else {
-      for (const std::vector<PartBox>& boxes : begun) runs.push_back(runs_of(boxes));
     }
     Found found;
     for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
       bool here = false;
-      const std::vector<PartBox>& boxes =
-          look == Look::kWay ? travel.everywhere() : in_start(begun, e);
+      const PartBoxes& boxes = look == Look::kWay ? travel.everywhere() : in_start(begun, e);
       const std::map<std::uint32_t, Around>& carriers = in_start(carried_by, e);
       for (const Start::Placed& placed : starts.task.starts[e].placed) {
         const scene::Solid body = body_of(placed, look);
-        const Vec3 half = body.half_extent();
-        for (const BoxRun& run : in_start(runs, e)) {
-          if (!run.may_overlap(body.centre, half)) continue;
-          for (std::size_t i = run.begin; i < run.end; ++i) {
-            const PartBox& box = boxes[i];
-            if (!may_overlap(box, body.centre, half)) continue;
-            const auto carrier = carriers.find(box.part);
-            if (placed.z && carrier != carriers.end() && carrier->second.holds(body.centre))
-              continue;
-            const double depth = overlap(box.solid, body);
-            if (depth <= kRounding) continue;
-            here = true;
-            if (depth <= found.depth) continue;
-            found.depth = depth;
-            found.episode = e;
-            found.box = &box;
-            found.placed = &placed;
-          }
-        }
+        boxes.each_near(body.centre, body.half_extent(), [&](const PartBox& box) {
+          const auto carrier = carriers.find(box.part);
+          if (placed.z && carrier != carriers.end() && carrier->second.holds(body.centre)) return;
+          const double depth = overlap(box.solid, body);
+          if (depth <= kRounding) return;
+          here = true;
+          if (depth <= found.depth) return;
+          found.depth = depth;
+          found.episode = e;
+          found.box = &box;
+          found.placed = &placed;
+        });
       }
       found.starts += here ? 1 : 0;
     }
@@ -130,8 +116,8 @@ struct TravelCheck {
   }
 
   void check(const std::vector<std::vector<double>>& joints) const {
-    std::vector<std::vector<PartBox>> begun;
-    for (const std::vector<double>& here : joints) begun.push_back(travel.at(here));
+    std::vector<PartBoxes> begun;
+    for (const std::vector<double>& here : joints) begun.emplace_back(travel.at(here));
     const std::string in_task = "` in `" + starts.task.name + "`";
     if (const Found found = deepest(begun, Look::kStart); found.box != nullptr) {
       Diagnostic& said = report(found,
@@ -156,11 +142,12 @@ struct TravelCheck {
     const Found found = deepest(begun, Look::kWay);
     if (found.box == nullptr) return;
     const bool is_chain = travel.carriers(found.box->part).size() > 1;
-    Diagnostic& said = report(found,
-                              "is in the way of `" + part_name(*found.box) + in_task +
-                                  ": they overlap by " + (is_chain ? "at least " : "") +
-                                  centimetres(found.depth) + when(fixture, travel, *found.box),
-                              is_chain);
+    Diagnostic& said =
+        report(found,
+               "is in the way of `" + part_name(*found.box) + in_task + ": they overlap by " +
+                   (is_chain ? "at least " : "") + centimetres(found.depth) +
+                   when_joints_stand(fixture, travel, *found.box),
+               is_chain);
     said.severity = Severity::kWarning;
     said.help(
         "move the fixture or the cells; if it is to be pushed away, say so: "

@@ -96,10 +96,12 @@ std::vector<PartBox> Travel::at(std::span<const double> joints) const {
 }
 
 void Travel::add(const std::vector<double>& joints, std::uint32_t part) {
-  const std::size_t first = everywhere_.size();
-  put(joints, part, &everywhere_);
-  for (std::size_t i = first; i < everywhere_.size(); ++i)
-    everywhere_[i].sample = static_cast<std::uint32_t>(samples_.size());
+  std::vector<PartBox> boxes;
+  put(joints, part, &boxes);
+  for (PartBox& box : boxes) {
+    box.sample = static_cast<std::uint32_t>(samples_.size());
+    everywhere_.add(box);
+  }
   samples_.push_back(joints);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "compiler/geometry/part_boxes.h"
 #include "compiler/model/model.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/geometry.h"
@@ -18,14 +19,6 @@ namespace probe::sema {
 
 // The box of an object, turned, with its model's origin at `origin`.
 scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
-
-// One box of a part.
-struct PartBox {
-  std::uint32_t part = 0;    // of Fixture::parts
-  std::uint32_t sample = 0;  // of Travel::joints_of(): where the joints stand
-  scene::Solid solid;
-  Vec3 half = Vec3::Zero();  // of the upright box around it
-};
 
 class Travel {
  public:
@@ -40,7 +33,7 @@ class Travel {
   // All that the joints' ways let the parts fill: a part that one joint carries at places about
   // 2 mm apart; of one that several carry the whole way of each, the others where they begin, and
   // kSampled places of all of them together.
-  const std::vector<PartBox>& everywhere() const { return everywhere_; }
+  const PartBoxes& everywhere() const { return everywhere_; }
   // The positions of all joints for a box of everywhere().
   std::span<const double> joints_of(const PartBox& box) const { return samples_[box.sample]; }
   // Indices of Fixture::joints that carry a part, from the root on; of a joint that follows
@@ -64,7 +57,7 @@ class Travel {
   std::vector<Shape> shapes_;
   std::vector<std::vector<std::size_t>> carriers_;  // by part
   std::vector<std::vector<double>> samples_;
-  std::vector<PartBox> everywhere_;
+  PartBoxes everywhere_;
 };
 
 }  // namespace probe::sema

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "compiler/define/views.h"
-#include "compiler/geometry/box_runs.h"
 #include "compiler/geometry/footprint.h"
 #include "compiler/geometry/in_frame.h"
 #include "compiler/geometry/pose.h"
 #include "compiler/geometry/reachable.h"
+#include "compiler/geometry/travel.h"
 #include "compiler/space/draws.h"
 #include "runtime/base/geometry.h"
 #include "runtime/base/trig.h"
@@ -38,9 +38,9 @@ bool is_seen(const std::vector<sema::Frustum>& eyes, const sema::Object& object,
 }
 
 // Whether it meets no part of a fixture on its way down to the surface, wherever the part stands.
-bool is_clear(const std::vector<sema::PartBox>& ways, const std::vector<sema::BoxRun>& runs,
-              const sema::Model& model, const sema::Task& task, const sema::Start::Placed& placed) {
-  if (ways.empty()) return true;
+bool is_clear(const sema::PartBoxes& ways, const sema::Model& model, const sema::Task& task,
+              const sema::Start::Placed& placed) {
+  if (ways.all().empty()) return true;
   const sema::Object& object = model.objects[placed.object];
   const double surface = model.scenes[task.scene].surface_z;
   const Mat3 turn = sema::axes_of(placed.turn);
@@ -49,24 +49,18 @@ bool is_clear(const std::vector<sema::PartBox>& ways, const std::vector<sema::Bo
   const Vec3 room = Vec3::Constant(kRoom), half = body.half_extent() + room;
   const Vec3 drop(0, 0, model.layouts[task.layout].drop);
   const scene::Solid falling = scene::upright_solid(body.centre - half, body.centre + half + drop);
-  const Vec3 around = falling.half_extent();
-  for (const sema::BoxRun& run : runs) {
-    if (!run.may_overlap(falling.centre, around)) continue;
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      if (sema::may_overlap(ways[i], falling.centre, around) &&
-          scene::overlap(ways[i].solid, falling) > 0)
-        return false;
-    }
-  }
-  return true;
+  bool is_met = false;
+  ways.each_near(falling.centre, falling.half_extent(), [&](const sema::PartBox& box) {
+    is_met = is_met || scene::overlap(box.solid, falling) > 0;
+  });
+  return !is_met;
 }
 
 }  // namespace
 
 std::optional<std::vector<sema::Start::Placed>> lay_clutter(
     const sema::Model& model, const sema::Task& task, const sema::Start& start, std::size_t number,
-    const std::vector<sema::ObjectId>& objects, std::uint64_t of,
-    const std::vector<sema::PartBox>& ways, const std::vector<sema::BoxRun>& runs) {
+    const std::vector<sema::ObjectId>& objects, std::uint64_t of, const sema::PartBoxes& ways) {
   const sema::Scene& scene = model.scenes[task.scene];
   const auto& area = scene.area;
   const sema::Robot& robot = model.robots[scene.robot];
@@ -96,7 +90,7 @@ std::optional<std::vector<sema::Start::Placed>> lay_clutter(
       if (!is_in_annulus(robot, distance_to_base(scene, placed))) continue;
       bool free = true;
       for (const sema::Footprint& other : there) free = free && overlap(print, other) < -kRoom;
-      if (!free || !is_clear(ways, runs, model, task, placed)) continue;
+      if (!free || !is_clear(ways, model, task, placed)) continue;
       there.push_back(print);
       laid.push_back(placed);
       found = true;

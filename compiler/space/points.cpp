@@ -9,6 +9,7 @@
 
 #include "compiler/define/views.h"
 #include "compiler/geometry/camera_pose.h"
+#include "compiler/geometry/travel.h"
 #include "compiler/space/draws.h"
 #include "compiler/space/start_rows.h"
 #include "runtime/base/geometry.h"
@@ -71,7 +72,7 @@ Quat turn_about(const Vec3& axis, double angle) {
 class Writer {
  public:
   Writer(const sema::Model& model, const sema::Space& space, const Point& point,
-         const std::vector<sema::PartBox>& ways)
+         const sema::PartBoxes& ways)
       : model_(model), space_(space), point_(point), ways_(ways), task_(model.tasks[space.of]) {}
 
   WrittenPoint write(bool allowed) {
@@ -263,7 +264,7 @@ class Writer {
   const sema::Model& model_;
   const sema::Space& space_;
   const Point& point_;
-  const std::vector<sema::PartBox>& ways_;
+  const sema::PartBoxes& ways_;
   const sema::Task& task_;
   std::string declarations_, statements_;
 };
@@ -326,16 +327,17 @@ std::string point_text(const sema::Space& space, const std::vector<double>& valu
 }
 
 WrittenPoint write_point(const sema::Model& model, const sema::Space& space, const Point& point,
-                         bool allowed, const std::vector<sema::PartBox>& ways) {
+                         bool allowed, const sema::PartBoxes& ways) {
   return Writer(model, space, point, ways).write(allowed);
 }
 
-std::vector<sema::PartBox> ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
-                                            const AssetRoot& assets) {
-  std::vector<sema::PartBox> ways;
+sema::PartBoxes ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
+                                 const AssetRoot& assets) {
+  sema::PartBoxes ways;
   for (const sema::FixtureId id : scene.fixtures) {
     const auto travel = sema::Travel::of(scene, model.fixtures[id], assets);
-    if (travel) ways.insert(ways.end(), travel->everywhere().begin(), travel->everywhere().end());
+    if (!travel) continue;
+    for (const sema::PartBox& box : travel->everywhere().all()) ways.add(box);
   }
   return ways;
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "compiler/geometry/travel.h"
+#include "compiler/geometry/part_boxes.h"
 #include "compiler/model/model.h"
 #include "runtime/base/asset_root.h"
 
@@ -57,9 +57,9 @@ struct WrittenPoint {
 // than one axis is known to move, which the text then says is meant. `ways`: what clutter keeps
 // clear of, ways_of_fixtures() of the task's scene.
 WrittenPoint write_point(const sema::Model& model, const sema::Space& space, const Point& point,
-                         bool allowed, const std::vector<sema::PartBox>& ways = {});
+                         bool allowed, const sema::PartBoxes& ways = {});
 // What the parts of fixtures fill wherever their joints stand. Reads their collision meshes.
-std::vector<sema::PartBox> ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
-                                            const AssetRoot& assets);
+sema::PartBoxes ways_of_fixtures(const sema::Model& model, const sema::Scene& scene,
+                                 const AssetRoot& assets);
 
 }  // namespace probe::space

@@ -136,17 +136,15 @@ bool has_own_starts(const sema::Model& model, const sema::Space& space, const Po
 }
 
 StartRows start_rows(const sema::Model& model, const sema::Space& space, const Point& point,
-                     const Clutter& clutter, const std::vector<sema::PartBox>& ways) {
+                     const Clutter& clutter, const sema::PartBoxes& ways) {
   const sema::Task& task = model.tasks[space.of];
   StartRows out;
-  const std::vector<sema::BoxRun> runs = sema::runs_of(ways);
   std::vector<Row> rows;
   for (const std::uint32_t number : wanted_starts(task, point)) {
     Row row{number, task.starts[number], {}};
     move_things(space, point, row);
     if (!clutter.objects.empty()) {
-      auto laid =
-          lay_clutter(model, task, row.start, number, clutter.objects, point.draw, ways, runs);
+      auto laid = lay_clutter(model, task, row.start, number, clutter.objects, point.draw, ways);
       if (!laid) continue;
       row.clutter = *std::move(laid);
     }

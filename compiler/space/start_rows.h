@@ -28,6 +28,6 @@ struct StartRows {
   std::string left_out;  // why there is none
 };
 StartRows start_rows(const sema::Model& model, const sema::Space& space, const Point& point,
-                     const Clutter& clutter, const std::vector<sema::PartBox>& ways);
+                     const Clutter& clutter, const sema::PartBoxes& ways);
 
 }  // namespace probe::space

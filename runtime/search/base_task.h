@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compiler/emit/analyzed.h"
-#include "compiler/geometry/travel.h"
+#include "compiler/geometry/part_boxes.h"
 #include "compiler/model/model.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/result.h"
@@ -35,7 +35,7 @@ class BaseTask {
   // Whether nothing of the text is out of the picture: else points of it may be as well.
   bool is_seen() const { return is_seen_; }
   // What clutter keeps clear of.
-  const std::vector<sema::PartBox>& ways() const { return ways_; }
+  const sema::PartBoxes& ways() const { return ways_; }
   // Where files of a text at `file` that uses this one are looked for.
   AssetRoot assets_beside(const std::string& file) const {
     return text_.compilation.asset_root.beside(std::span(&file, 1));
@@ -51,7 +51,7 @@ class BaseTask {
   AnalyzedText text_;
   const sema::Space* space_ = nullptr;
   std::string hash_;
-  std::vector<sema::PartBox> ways_;
+  sema::PartBoxes ways_;
   bool is_seen_ = true;
 };
 

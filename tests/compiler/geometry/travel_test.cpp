@@ -19,7 +19,7 @@ TEST_CASE("a part fills all that its joint lets it reach, in steps of two millim
   // The drawer's box of 10 cm slides by 20 cm along the world's y, for the chest is turned by 90
   // degrees.
   double low = 1, high = -1, last = -1, widest = 0;
-  for (const PartBox& box : travel->everywhere()) {
+  for (const PartBox& box : travel->everywhere().all()) {
     if (box.part != 1) continue;
     low = std::min(low, box.solid.centre.y());
     high = std::max(high, box.solid.centre.y());
@@ -61,5 +61,5 @@ TEST_CASE("what many joints carry is looked at in so many places, however many j
       Travel::of(*a->model.scenes.begin(), *a->model.fixtures.begin(), test::asset_root());
   REQUIRE(travel);
   CHECK(travel->carriers(25).size() == 26);
-  CHECK(travel->everywhere().size() < 26 * (2048 + 26 * 3));
+  CHECK(travel->everywhere().all().size() < 26 * (2048 + 26 * 3));
 }

@@ -181,7 +181,7 @@ TEST_CASE("clutter keeps clear of the ways of fixtures' parts, as far as there i
   part.solid = scene::upright_solid({scene.area[0], scene.area[1], scene.surface_z},
                                     {scene.area[2], middle, scene.surface_z + 0.1});
   part.half = part.solid.half_extent();
-  const auto in_its_way = [&](const std::vector<sema::PartBox>& ways) {
+  const auto in_its_way = [&](const sema::PartBoxes& ways) {
     const WrittenPoint written = write_point(base->text.model, space, point, false, ways);
     AnalyzedText text;
     const sema::Task& task = compiled(*base, written, text, "p");
@@ -197,11 +197,12 @@ TEST_CASE("clutter keeps clear of the ways of fixtures' parts, as far as there i
     return found;
   };
   CHECK(in_its_way({}) > 10);
-  CHECK(in_its_way({part}) == 0);
+  CHECK(in_its_way(sema::PartBoxes({part})) == 0);
   part.solid = scene::upright_solid({scene.area[0], scene.area[1], scene.surface_z},
                                     {scene.area[2], scene.area[3], scene.surface_z + 0.1});
   part.half = part.solid.half_extent();
-  const WrittenPoint none = write_point(base->text.model, space, point, false, {part});
+  const WrittenPoint none =
+      write_point(base->text.model, space, point, false, sema::PartBoxes({part}));
   CHECK(none.left_out.find("find no room") != std::string::npos);
 }
 
