@@ -61,13 +61,13 @@ Status search_axes(Hunt& hunt) {
       fmt::format("{} of points drawn over the whole space fail", k_of_n(found.failures)));
   if (found.left_out > 0)
     summary.lines.push_back(
-        fmt::format("{} more were left out, so what is said is of the fair part of the space "
+        fmt::format("{} more were left out, so what is said is of the part of the space that {} "
                     "(points.csv has why)",
-                    found.left_out));
+                    found.left_out, hunt.is_fair()));
   const bool are_alike = found.failures.k == 0 || found.failures.k == found.failures.n;
   if (are_alike || found.too_few) {
     summary.lines.push_back(
-        found.failures.n == 0 ? "no point that was drawn is fair, so nothing was tried"
+        found.failures.n == 0 ? fmt::format("no point that was drawn {}", hunt.is_fair())
         : found.too_few
             ? fmt::format("{} trials count, which is too few to compare parts of axes: {} have to; "
                           "a search in another folder with --budget {} may have them",

@@ -185,8 +185,9 @@ class BoundarySearch {
           break;
         case BoundaryStatus::kLeftOut:
           line += found.own.n == 0
-                      ? "not even the task itself is fair"
-                      : "nothing but the task itself is fair" + reason(side, 1, planned);
+                      ? fmt::format("not even the task itself {}", hunt_.is_fair())
+                      : fmt::format("nothing but the task itself {}", hunt_.is_fair()) +
+                            reason(side, 1, planned);
           break;
         case BoundaryStatus::kRunning:
           line += "under way";
@@ -194,8 +195,8 @@ class BoundarySearch {
           break;
       }
       if (found.last_level < side.side.levels - 1 && found.status != BoundaryStatus::kLeftOut)
-        line +=
-            "; nothing beyond " + last + " is fair" + reason(side, found.last_level + 1, planned);
+        line += "; nothing beyond " + last + " " + hunt_.is_fair() +
+                reason(side, found.last_level + 1, planned);
       hunt_.summary.lines.push_back(line);
       Json one = {{"axis", axis.name},
                   {"up", side.side.up},

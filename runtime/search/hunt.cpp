@@ -48,6 +48,8 @@ Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
   summary.episodes += trials.episodes();
   summary.ran += trials.ran();
   summary.left_out += trials.unfair() + trials.invalid();
+  summary.invalid += trials.invalid();
+  if (summary.first_invalid.empty()) summary.first_invalid = trials.first_invalid();
   for (const std::string& note : trials.notes()) {
     if (std::ranges::find(summary.notes, note) == summary.notes.end())
       summary.notes.push_back(note);

@@ -38,6 +38,9 @@ struct Hunt {
   void tell(const std::string& what) const {
     if (options.tell) options.tell(what);
   }
+  // "is fair", of what was tried or not. Where episodes came to no end that counts, that is no word
+  // for it.
+  const char* is_fair() const { return summary.invalid > 0 ? "could be tried" : "is fair"; }
   // A new round of these points.
   Result<PlannedPoints> plan(std::vector<space::Point> points);
   std::string round_folder(int number) const;

@@ -67,8 +67,8 @@ Json joined_worst(std::span<const WorstShard> shards) {
   double rate = 0;
   std::vector<Json> found;
   std::set<std::string> names;
-  for (const char* const key : {"trials", "episodes", "left_out", "expert_starts", "expert_unsolved",
-                                "expert_not_attempted"}) {
+  for (const char* const key : {"trials", "episodes", "left_out", "invalid", "expert_starts",
+                                "expert_unsolved", "expert_not_attempted"}) {
     int sum = 0;
     for (const WorstShard& shard : shards) sum += whole(shard.findings, key);
     if (joined.find(key) != nullptr) joined[key] = sum;

@@ -125,7 +125,9 @@ Status search_minimal(Hunt& hunt) {
       break;
     case MinimalStatus::kNotReliable:
       if (!found.tried.empty() && found.tried.front().failures.n == 0) {
-        line = "the case is not fair, so it was not tried: points.csv says why";
+        line = summary.invalid > 0
+                   ? "the case could not be tried"
+                   : "the case is not fair, so it was not tried: points.csv says why";
         break;
       }
       line = "the case does not fail reliably, so nothing can be put back: " +

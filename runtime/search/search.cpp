@@ -16,6 +16,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFormat = "vlaprobe search";
 constexpr int kVersion = 1;
+// Share of trials: what a policy cannot be judged in is not left out as if by chance.
+constexpr double kMostInvalid = 0.1;
 constexpr std::string_view kMethods[] = {"boundary", "worst", "minimal", "axes"};
 
 std::string file_of(const std::string& folder) {
@@ -176,6 +178,13 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
                                           search_axes};
   PROBE_TRY(kSearch[static_cast<std::size_t>(options.method)](hunt));
   Json& found = summary.findings;
+  if (summary.invalid > 0) {
+    const std::string what = fmt::format("{} of {} trials are invalid and left out, first {}",
+                                         summary.invalid, summary.trials, summary.first_invalid);
+    if (summary.invalid > kMostInvalid * summary.trials)
+      return Failure{Fault::kPolicy, what + ". Of such a policy nothing is said", options.run.out};
+    summary.lines.insert(summary.lines.begin(), what);
+  }
   // Of the worst a shard is a search of its own.
   if (options.run.shards > 1 && options.method != Method::kWorst) {
     summary.is_done = false;
@@ -189,6 +198,7 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   found["trials"] = summary.trials;
   found["episodes"] = summary.episodes;
   found["left_out"] = summary.left_out;
+  found["invalid"] = summary.invalid;
   if (hunt.solved) {
     found["expert_starts"] = hunt.solved->known();
     found["expert_unsolved"] = hunt.solved->unsolved();
@@ -229,6 +239,7 @@ Result<SearchSummary> read_search(const std::string& folder) {
   summary.trials = count("trials");
   summary.episodes = count("episodes");
   summary.left_out = count("left_out");
+  summary.invalid = count("invalid");
   const Json* const done = summary.findings.find("done");
   summary.is_done = done != nullptr && done->is_boolean() && done->get<bool>();
   if (!summary.is_done && summary.findings.find("lines") == nullptr)

@@ -40,6 +40,9 @@ struct SearchSummary {
   std::vector<std::string> lines;  // the same in words
   std::vector<std::string> notes;
   int trials = 0, episodes = 0, ran = 0, left_out = 0;
+  // Of those left out: whose episodes came to no end that counts, and of the first which and why.
+  int invalid = 0;
+  std::string first_invalid;
   bool is_done = true;  // else something is open that more budget would tell
 };
 

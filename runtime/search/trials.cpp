@@ -162,13 +162,31 @@ Status Trials::read_known() {
     return Failure{
         Fault::kUsage,
         "its episodes are of another plan than the points make now: another build, other "
-        "assets or another expert; choose another folder",
+        "assets, another expert, or an earlier round's episode that was run again and ended "
+        "otherwise; choose another folder",
         options_.out};
   PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
   // What a server or the world spoiled is run again, unless what was asked next followed from its
   // being left out.
   for (const store::ResultRow& row : rows) {
-    if (is_over_ || !store::is_open(row)) keep(row);
+    const bool was_told_so =
+        is_over_ && row.invalid && !store::Store::is_later_reason(*row.invalid);
+    if (was_told_so || !store::is_open(row)) keep(row);
+  }
+  return {};
+}
+
+// A row may be made invalid after it was told: an answer was to another question than it seemed.
+Status Trials::check_told() const {
+  PROBE_ASSIGN(const auto rows, store::read_results(options_.out));
+  for (const store::ResultRow& row : rows) {
+    if (!store::is_open(row)) continue;
+    const auto told = known_.find(store::key_of(row));
+    if (told == known_.end() || !told->second) continue;
+    return Failure{Fault::kPolicy,
+                   store::to_text(told->first) + " is invalid: " + *row.invalid +
+                       ". What is asked next followed from it: the same command runs it again",
+                   options_.out};
   }
   return {};
 }
@@ -306,19 +324,15 @@ Status Trials::run(const Asking& asking) {
     return advance();
   };
   PROBE_ASSIGN(const run::RunSummary summary, run::run(planned_.plan, options));
+  PROBE_TRY(check_told());
   notes_.insert(notes_.end(), summary.notes.begin(), summary.notes.end());
   return {};
 }
 
-std::vector<std::string> Trials::notes() const {
-  std::vector<std::string> notes = notes_;
-  if (!lost_.empty()) {
-    const auto& [key, why] = *lost_.begin();
-    notes.push_back(std::to_string(lost_.size()) +
-                    (lost_.size() == 1 ? " episode is" : " episodes are") +
-                    " invalid and left out, first " + store::to_text(key) + ": " + why);
-  }
-  return notes;
+std::string Trials::first_invalid() const {
+  if (lost_.empty()) return "";
+  const auto& [key, why] = *lost_.begin();
+  return store::to_text(key) + ": " + why;
 }
 
 }  // namespace probe::search

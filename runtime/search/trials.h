@@ -96,7 +96,8 @@ class Trials {
   int ran() const { return ran_; }                                  // by this call
   int unfair() const { return unfair_; }    // trials whose point no start is fair of
   int invalid() const { return invalid_; }  // trials whose episodes count neither way
-  std::vector<std::string> notes() const;
+  std::string first_invalid() const;        // an episode of them and why; empty: none
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct Place {
@@ -107,6 +108,7 @@ class Trials {
   Result<std::vector<std::optional<Place>>> places_of(std::span<const Trial> trials);
   Result<std::vector<run::EpisodeJob>> advance();
   Status read_known();
+  Status check_told() const;
   void keep(const store::ResultRow& row);
   Outcome outcome_of(const Place& place) const;
 

@@ -3,6 +3,7 @@
 // counts as absent.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,6 +85,9 @@ class Store {
       "that one policy answered the call to its end was never shown, and another answers now";
   static constexpr std::string_view kLaterReasons[] = {kMixedUp, kExchanged, kOutOfStep,
                                                        kNeverShown};
+  static bool is_later_reason(std::string_view reason) {
+    return std::ranges::any_of(kLaterReasons, [&](auto one) { return reason.ends_with(one); });
+  }
   // Makes rows that are valid invalid, for one of these reasons, all of them or none; their traces
   // stay, and they are run again as all that are invalid.
   virtual Status invalidate(const std::vector<EpisodeKey>& keys, const std::string& reason) = 0;

@@ -24,9 +24,7 @@ Result<Trace> read_stored_trace(const ResultRow& row) {
   }
   // A row may become invalid after its trace ended, where it was not shown who answered.
   const bool was_exchanged =
-      row.invalid && !trace.end->invalid &&
-      std::ranges::any_of(Store::kLaterReasons,
-                          [&](std::string_view reason) { return row.invalid->ends_with(reason); });
+      row.invalid && !trace.end->invalid && Store::is_later_reason(*row.invalid);
   const bool ended_so = trace.end->invalid == row.invalid || was_exchanged;
   if (!ended_so || (!row.invalid && trace.end->metrics != row.metrics)) {
     return Failure{Fault::kTrace, "this trace ended with other verdicts than its result row says",

@@ -379,7 +379,8 @@ class Wild final : public servers::ServedPolicy {
   Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
     const auto bytes = std::as_bytes(std::span(asked.picture.bytes));
     auto actions = digest_->answer(asked, count);
-    if (actions && sha256(bytes).bytes[0] < 1 &&
+    const Sha256 hash = sha256(bytes);
+    if (actions && hash.bytes[0] == 0 && hash.bytes[1] < 64 &&
         !servers::is_known_observation(asked.picture.bytes, asked.words))
       actions->front()[0] = 2;
     return actions;
@@ -403,12 +404,47 @@ TEST_CASE("what a policy asks for in some episodes and nobody can do leaves thes
   search.options.run.give_up_after = 0;
   const SearchSummary found = search.find();
   CHECK(found.left_out > 0);
-  REQUIRE_FALSE(found.notes.empty());
-  CHECK_MESSAGE(found.notes.back().find("invalid and left out, first") != std::string::npos,
-                found.notes.back());
-  CHECK(found.notes.back().find("2.0") != std::string::npos);
+  CHECK(found.invalid > 0);
+  CHECK_MESSAGE(found.lines[0].find("trials are invalid and left out, first") != std::string::npos,
+                found.lines[0]);
+  CHECK(found.lines[0].find("2.0") != std::string::npos);
   const SearchSummary again = search.find();
   CHECK(again.findings == found.findings);
+}
+
+// It asks for what nobody can do wherever a server is not looked at before it is asked.
+class Impossible final : public servers::ServedPolicy {
+ public:
+  void reset() override {}
+  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
+    auto actions = digest_->answer(asked, count);
+    if (actions && !servers::is_known_observation(asked.picture.bytes, asked.words))
+      actions->front()[0] = 2;
+    return actions;
+  }
+
+ private:
+  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest().value()();
+};
+
+TEST_CASE(
+    "of a policy that spoils what it is asked for nothing is said, least of all what is fair") {
+  Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
+  servers::ServeOptions served;
+  served.policy = [] { return std::make_unique<Impossible>(); };
+  const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
+  REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
+  search.options.proves = false;
+  search.options.run.policy = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
+                              servers::options_for_served(servers::Protocol::kOpenpi, served);
+  search.options.run.name = "impossible";
+  search.options.run.retries = 0;
+  search.options.run.give_up_after = 0;
+  const Failure failure = search.refused();
+  CHECK(failure.code == Fault::kPolicy);
+  CHECK_MESSAGE(failure.message.find("Of such a policy nothing is said") != std::string::npos,
+                failure.message);
+  CHECK_FALSE(read_search(search.options.run.out)->is_done);
 }
 
 TEST_CASE("a text without a space, with several, or with mistakes is refused") {
