@@ -180,14 +180,14 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
-        compilation.asset_root,
-        options.suite,
-        std::filesystem::path(analyzed.roots.front()).parent_path().string(),
-        write,
-        options.inspect_asset,
-        options.wants_task,
-        plan.is_kept,
-        hashed};
+        .asset_root = compilation.asset_root,
+        .suite = options.suite,
+        .source_folder = std::filesystem::path(analyzed.roots.front()).parent_path().string(),
+        .write = write,
+        .inspect_asset = options.inspect_asset,
+        .wants_task = options.wants_task,
+        .proves = plan.is_kept,
+        .hashed = hashed};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
   }
@@ -199,10 +199,10 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
 // One program of those that are checked; its plan goes to whoever asked for it.
 Result<Compilation> check_program(const std::string& root, const CompileOptions& options,
                                   SourceSet sources, emit::AssetHashes& hashed) {
-  const WantedPlan plan{static_cast<bool>(options.on_plan), false, options.most_starts};
+  const WantedPlan plan{static_cast<bool>(options.plans.take), false, options.plans.most_starts};
   PROBE_ASSIGN(Compilation program,
                compile(std::span(&root, 1), options, plan, std::move(sources), &hashed));
-  if (!program.plan.empty()) options.on_plan(std::move(program.plan));
+  if (!program.plan.empty()) options.plans.take(std::move(program.plan));
   program.plan.clear();
   return program;
 }

@@ -23,6 +23,15 @@ namespace probe {
 using AssetInspector = std::function<Status(const std::string& folder, const std::string& path,
                                             plan::AssetKind kind, const Sha256& hash)>;
 
+// Who looks at plans that nobody keeps: of programs without mistakes that have at most so many
+// starts. Their ids are computed once, and not once more to be sure of them.
+struct PlanTaker {
+  std::function<void(std::vector<std::byte>)> take = {};  // none: no plan is made
+  std::size_t most_starts = 0;
+  // What was taken: called by who compiles all of it again.
+  std::function<void()> forget = {};
+};
+
 struct CompileOptions {
   // What lies beside the texts is looked for, too.
   AssetRoot asset_root;
@@ -36,9 +45,7 @@ struct CompileOptions {
   // The tasks to keep, by name; none: all. For assets that do not serve every task.
   std::function<bool(std::string_view)> wants_task = {};
   bool wants_unheld = false;  // Compilation::unheld
-  // Of check(): gets the plan of each program without mistakes that has at most so many starts.
-  std::function<void(std::vector<std::byte>)> on_plan = {};
-  std::size_t most_starts = 0;
+  PlanTaker plans = {};       // of check()
 };
 
 // Words of a task's instruction and the object that they mean.

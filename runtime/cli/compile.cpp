@@ -21,8 +21,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
                                                  .suite = suite,
                                                  .tasks = chosen_only ? assets.tasks : "",
                                                  .wants_plan = want_plan,
-                                                 .on_plan = plans.take,
-                                                 .most_starts = plans.most_starts});
+                                                 .plans = plans});
   if (!compiled) {
     text.exit = report(compiled.failure());
     return text;

@@ -26,16 +26,8 @@ struct CompiledText {
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use
 };
 
-// Gets the plans of programs without mistakes that have at most so many starts, where no plan is
-// returned.
-struct PlanTaker {
-  std::function<void(std::vector<std::byte>)> take = {};
-  std::size_t most_starts = 0;
-  std::function<void()> forget = {};  // what was taken: all is compiled again
-};
-
 // The same in two steps: nothing is printed but a Failure of the outside, and then what was said.
-// `chosen_only`: just the tasks of AssetOptions::tasks.
+// `chosen_only`: just the tasks of AssetOptions::tasks. `plans`: where none is wanted here.
 CompiledText compile_quietly(const std::vector<std::string>& files, const AssetOptions& assets,
                              const std::string& suite, bool want_plan, bool json = false,
                              bool chosen_only = false, const PlanTaker& plans = {});

@@ -21,8 +21,7 @@ Result<Compilation> compile_files(const std::vector<std::string>& files,
                          .inspect_asset = std::move(inspect),
                          .unsaved = request.unsaved,
                          .stop = request.stop,
-                         .on_plan = request.on_plan,
-                         .most_starts = request.most_starts};
+                         .plans = request.plans};
   if (!request.tasks.empty()) {
     options.wants_task = [glob = request.tasks](std::string_view name) {
       // A task may be asked for with its suite's prefix before it.

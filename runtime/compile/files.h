@@ -25,9 +25,7 @@ struct FilesRequest {
   // As in CompileOptions: what is not saved, and whether an answer is still wanted.
   std::map<std::string, std::string> unsaved = {};
   const std::atomic<bool>* stop = nullptr;
-  // As in CompileOptions, where no plan is wanted.
-  std::function<void(std::vector<std::byte>)> on_plan = {};
-  std::size_t most_starts = 0;
+  PlanTaker plans = {};  // where no plan is wanted
 };
 
 // A text with mistakes is no failure: its diagnostics say them. Fails (kAsset, kUsage, kIo) as
