@@ -1,5 +1,6 @@
 #include "compiler/emit/assets.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -33,13 +34,15 @@ std::uint32_t AssetTable::add(const std::string& path, plan::AssetKind kind, con
   const auto miss = [&](std::string why) {
     for (AssetMiss& known : misses_) {
       if (known.path != path) continue;
-      known.owners.push_back(owner);  // whatever it is for
+      if (std::ranges::find(known.owners, owner) == known.owners.end())
+        known.owners.push_back(owner);
       return plan::kNone;
     }
     misses_.push_back({path, std::move(why), span, {owner}});
     return plan::kNone;
   };
-  if (!is_new) return at->second == plan::kNone ? miss({}) : at->second;
+  if (!is_new && at->second != plan::kNone) return at->second;
+  if (!is_new) return miss({});  // why, is known
   // What the verifier would refuse without a place.
   if (!plan::is_asset_path(path))
     return miss("is not written straight, without `.`, `..`, `\\` and empty parts");

@@ -31,13 +31,15 @@ struct Asset {
 struct AssetOwner {
   enum class Kind { kObject, kScene, kRobot, kFixture } kind = Kind::kObject;
   std::uint32_t id = 0;  // of the model
+
+  bool operator==(const AssetOwner&) const = default;
 };
 
 // A file that is not there or not good.
 struct AssetMiss {
   std::string path, why;
-  Span span;  // where the first of them names it
-  std::vector<AssetOwner> owners;
+  Span span;                       // where it is named first
+  std::vector<AssetOwner> owners;  // all that have it, each once
 };
 
 class AssetTable {
@@ -47,7 +49,7 @@ class AssetTable {
       : root_(std::move(root)), inspect_(std::move(inspect)), hashed_(hashed) {}
 
   // The index of the file; kNone, and a miss, when it is not there, not readable or not good. A
-  // file is missed once.
+  // file is missed once, for all its owners.
   std::uint32_t add(const std::string& path, plan::AssetKind kind, const Span& span,
                     AssetOwner owner);
 

@@ -43,13 +43,12 @@ plan::Slice Emitter::add_views(const std::vector<sema::View>& views, sema::Scene
   return at->second;
 }
 
-// A camera that moves sees meshes, whatever photo is there.
 void Emitter::check_photo(const sema::View& view, sema::SceneId scene, std::uint32_t photo) {
   if (photo == plan::kNone) return;
   const sema::Camera& camera = model_.cameras[view.camera];
   const robot::RobotModel& robot = *model_.robots[model_.scenes[scene].robot].model;
   const int mount = robot.find_link(camera.mount_link.text);
-  if (mount < 0 || !robot.is_fixed(mount)) return;
+  if (mount < 0 || !robot.is_fixed(mount)) return;  // one that moves sees meshes and no photo
   const auto size = assets_.image_size(photo);
   if (!size) return;  // told where files are looked at
   const auto defect = scene::photo_defect(*size, camera.width, camera.height);

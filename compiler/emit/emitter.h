@@ -129,6 +129,7 @@ class Emitter {
   plan::Slice add_roles(const sema::Task& task, const std::vector<lower::Body>& bodies);
   // Tasks of one scene share them.
   plan::Slice add_views(const std::vector<sema::View>& views, sema::SceneId scene);
+  // P0304, once for a photo and a camera: one of another shape than the picture that it is behind.
   void check_photo(const sema::View& view, sema::SceneId scene, std::uint32_t photo);
   void add_task(const sema::Task& task);
   plan::Slice add_moves(const sema::Task& task);
@@ -178,7 +179,7 @@ class Emitter {
   Used<sema::SceneId> scenes_;
   Used<TaskId> tasks_;
   std::set<std::pair<sema::LightId, sema::CameraId>> shading_told_;  // by check_shading
-  std::set<std::pair<std::uint32_t, sema::CameraId>> photo_told_;
+  std::set<std::pair<std::uint32_t, sema::CameraId>> photo_told_;    // by check_photo
   std::vector<lower::Program> programs_;
   std::map<std::vector<std::uint32_t>, std::uint32_t> programs_by_shape_;  // lower::shape_of
   // Program, horizon, control rate, room.

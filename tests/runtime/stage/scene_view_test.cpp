@@ -82,9 +82,6 @@ class Pictures {
              fs::copy_options::recursive);
     const std::vector<std::uint8_t> photo(3 * 320 * 240, 123);
     REQUIRE(scene::write_png((folder_ / "assets/scenes/wall.png").string(), 320, 240, photo).ok());
-    REQUIRE(scene::write_png((folder_ / "assets/scenes/wide.png").string(), 320, 200,
-                             std::span(photo).first(3 * 320 * 200))
-                .ok());
     const std::string text = (folder_ / "pictures.probe").string();
     std::ofstream(text) << kVariants;
     const std::string files[] = {text};
@@ -224,24 +221,6 @@ TEST_CASE("lights, cameras and backdrops of the language are what is drawn") {
     starts.insert(Sha256{pictures.plan().episodes(task)[0].start_id});
   }
   CHECK(starts.size() == pictures.plan().tasks().size());  // every one of these is in the id
-}
-
-TEST_CASE("a photo of another shape than the picture is refused before a run, with both sizes") {
-  const Pictures pictures;
-  const std::string text = pictures.root() + "/../wide.probe";
-  std::ofstream(text) << "use \"pictures.probe\"\n"
-                         "scene wide_photo like table { camera third_view overlay \"wide.png\" }\n"
-                         "variant carrot_wide of carrot_on_plate { scene wide_photo }\n";
-  const std::string files[] = {text};
-  const auto checked =
-      check(files, {.asset_root = pictures.root(),
-                    .library_folders = {VLAPROBE_SOURCE_DIR "/dsl", VLAPROBE_SOURCE_DIR}});
-  REQUIRE_MESSAGE(checked.ok(), to_text(checked.failure()));
-  REQUIRE(checked->diagnostics.size() == 1);
-  const Diagnostic& said = checked->diagnostics.items().front();
-  CHECK(said.code == Code::P0304);
-  CHECK(said.message.find("320 x 200 pixels, the camera's picture 640 x 480") != std::string::npos);
-  CHECK(said.message.find("scenes/wide.png") != std::string::npos);
 }
 
 // Share of the picture that shows the backdrop within a millimetre of height `z`.
