@@ -60,7 +60,7 @@ Result<run::RunOptions> read(const vlaprobe_run_options& given, const api::Share
   if (given.videos < VLAPROBE_NO_VIDEOS || given.videos > VLAPROBE_ALL_VIDEOS)
     return api::usage("there is no choice of videos " + std::to_string(given.videos));
   options.video = static_cast<run::VideoChoice>(given.videos);
-  if (given.until != nullptr) PROBE_TRY(run::read_until(given.until, options));
+  if (given.until != nullptr) PROBE_TRY(run::set_until(given.until, options));
   return options;
 }
 

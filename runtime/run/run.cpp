@@ -318,7 +318,7 @@ std::string content_of(const RunOptions& options, const PolicyTraits& traits) {
 
 }  // namespace
 
-Status read_until(const std::string& words, RunOptions& options) {
+Status set_until(const std::string& words, RunOptions& options) {
   options.drops_until = words == "none";
   options.until.reset();
   if (options.drops_until) return {};

@@ -95,7 +95,7 @@ struct RunOptions {
 
 // "width 10%", "width 5% of all", "decided-against DIR", "none": when a run stops early, as
 // `until` or `drops_until` of `options`. Fails (kUsage) on other words.
-Status read_until(const std::string& words, RunOptions& options);
+Status set_until(const std::string& words, RunOptions& options);
 
 struct RunSummary {
   int total = 0, done = 0, skipped = 0, invalid = 0;

@@ -26,8 +26,8 @@ int run_verb(const CallArguments& arguments) {
   const auto shard = parse_shard(arguments.shard);
   if (!shard) return report(shard.failure());
   if (!arguments.until.empty()) {
-    if (auto read = run::read_until(arguments.until, *options); !read)
-      return report(read.failure());
+    if (const auto set = run::set_until(arguments.until, *options); !set)
+      return report(set.failure());
   }
   options->shard = shard->first;
   options->shards = shard->second;
