@@ -43,7 +43,7 @@ Status Hunt::try_out(const PlannedPoints& planned, const Trials::Asking& asking,
   Trials trials(base, planned, run, solved.get(), options.seed, kind, first_seed);
   // Of boundaries whole sides are shared out: what is asked next depends on what was found.
   if (options.method == Method::kAxes) trials.share(options.run.shard, options.run.shards);
-  if (is_folder(round_folder(rounds + 1))) trials.is_over();
+  if (is_folder(round_folder(rounds + 1))) trials.mark_over();
   const Status ran = trials.run(asking);
   summary.episodes += trials.episodes();
   summary.ran += trials.ran();

@@ -26,13 +26,13 @@ struct Hunt {
   const BaseTask& base;
   SearchSummary& summary;
   StoredPoints stored_points;
-  std::unique_ptr<Solved> solved;  // null where nothing is to be proved
-  std::string round;               // the folder of the round that is under way
-  int rounds = 0;
-  Case whole;  // of `minimal`: what is made smaller
+  std::unique_ptr<Solved> solved = nullptr;  // null where nothing is to be proved
+  std::string round = {};                    // the folder of the round that is under way
+  int rounds = 0;                            // its number, from 1 on
+  Case whole;                                // of `minimal`: what is made smaller
   // What is kept as a text at the end, with a comment for each.
-  std::vector<space::Point> kept;
-  std::vector<std::string> remarks;
+  std::vector<space::Point> kept = {};
+  std::vector<std::string> remarks = {};
 
   const sema::Space& space() const { return base.space(); }
   void tell(const std::string& what) const {
@@ -41,7 +41,7 @@ struct Hunt {
   // "is fair", of what was tried or not. Where episodes came to no end that counts, that is no word
   // for it.
   const char* is_fair() const { return summary.invalid > 0 ? "could be tried" : "is fair"; }
-  // A new round of these points.
+  // Begins the next round, of these points.
   Result<PlannedPoints> plan(std::vector<space::Point> points);
   std::string round_folder(int number) const;
   // Runs the policy in the round until `asking` is done. `kind` names its draws.

@@ -9,7 +9,9 @@
 
 namespace probe::search {
 
-// The points in their order, then those that prove others: each has its proof.
+// The points in their order, then those that prove others. PlannedPoint::proof of each is set:
+// itself, where all that is changed moves things; one of those behind, NAME_placed, where other
+// things are changed, too; kBase, where nothing is moved.
 std::vector<PlannedPoint> with_proofs(const sema::Space& space, std::vector<space::Point> points);
 
 }  // namespace probe::search

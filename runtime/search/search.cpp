@@ -173,7 +173,11 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
                       {"done", false}};
   if (!is_there(file_of(options.run.out)) || !has_episodes(options.run.out))
     PROBE_TRY(write_search(options.run.out, summary.findings));
-  Hunt hunt{options, *base, summary, StoredPoints(*base), nullptr, "", 0, std::move(whole), {}, {}};
+  Hunt hunt{.options = options,
+            .base = *base,
+            .summary = summary,
+            .stored_points = StoredPoints(*base),
+            .whole = std::move(whole)};
   constexpr Status (*kSearch[])(Hunt&) = {search_boundary, search_worst, search_minimal,
                                           search_axes};
   PROBE_TRY(kSearch[static_cast<std::size_t>(options.method)](hunt));

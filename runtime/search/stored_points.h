@@ -23,7 +23,7 @@ class StoredPoints {
   // again it is right, or refused with its reason.
   std::optional<PlannedPoints> find(std::span<const PlannedPoint> points,
                                     const std::string& folder);
-  // `points`: as they were before they were compiled.
+  // `points`: as they were before they were compiled. Fails (kIo) where it cannot be written.
   Status keep(std::span<const PlannedPoint> points, const PlannedPoints& planned,
               const std::string& folder) const;
 

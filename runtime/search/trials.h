@@ -86,7 +86,7 @@ class Trials {
 
   // What was asked next followed from how these trials ended: of an episode that a server spoiled
   // nothing else is to be told than was then.
-  void is_over() { is_over_ = true; }
+  void mark_over() { is_over_ = true; }
 
   // Until the method is done. Fails as run() does; what was run until then is stored, and the same
   // call goes on.
