@@ -12,14 +12,16 @@ namespace {
 using samples::Floats;
 using samples::Ints;
 
-// Set up as arrays: the edge across from a corner by steps of a subpixel
-// right and down and at the left top of the box's first pixel, and the nearness it brings.
+// Triangles as arrays, [corner][triangle]. Of the edge across from a corner (twice the area of a
+// point's part of the triangle, square subpixels): what a step of a subpixel right and below adds,
+// and its value at the left top of the box's first pixel. `share`: 1 / depth (1/m) of the corner,
+// then that over twice the triangle's area.
 struct BoxedEdges {
   static constexpr std::size_t kMost = SmallTriangles::kMost;
   std::int32_t x[3][kMost], y[3][kMost];  // of corners, in the picture and then in the box
   float share[3][kMost];
   std::int32_t right[3][kMost], below[3][kMost], edge[3][kMost];
-  std::int32_t pixel[kMost];
+  std::int32_t pixel[kMost];  // the box's first
 };
 
 PROBE_CLONES void gather_corners(const SmallTriangles& triangles, const SomeTriangles& boxed,
@@ -97,12 +99,12 @@ template <int kSide>
 
 PROBE_CLONES void draw_edges(const BoxedEdges& of, const SomeTriangles& boxed, int side,
                              std::uint32_t first_id, const std::uint32_t* numbers,
-                             const SampleGrid& grid, int count, const SampleRows& out) {
+                             const SampleGrid& grid, int samples, const SampleRows& out) {
   Ints across, down;
   std::memcpy(&across, grid.across.data(), sizeof across);
   std::memcpy(&down, grid.down.data(), sizeof down);
-  const Ints taken = samples::first_samples(count);
-  const SampleRows rows = out;
+  const Ints taken = samples::first_samples(samples);
+  const SampleRows rows = out;  // a copy: what is written could else change it
   const auto id = [&](std::size_t i) {
     return static_cast<std::int32_t>(first_id + numbers[boxed.which[i]]);
   };

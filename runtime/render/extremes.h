@@ -1,4 +1,5 @@
-// Least, greatest and truths as selections, which loops over arrays turn into vector instructions.
+// Least, greatest, truths and signs without branches, which loops over arrays turn into vector
+// instructions.
 #pragma once
 
 #include <cstdint>

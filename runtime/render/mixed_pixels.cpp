@@ -10,6 +10,12 @@ namespace {
 
 using Ints = std::int32_t __attribute__((vector_size(16)));
 
+// What is linear in the picture, at one place of it.
+inline Rgb plane(const Rgb& by_across, const Rgb& by_down, const Rgb& at_middle, float across,
+                 float down) {
+  return by_across * across + by_down * down + at_middle;
+}
+
 // What a triangle shows in the middle of a pixel, 0 .. 1, whether that lies in it or beside; the
 // denominator is found on the way.
 inline Rgb color_of(const SeenFace& face, float across, float down, float& denominator) {

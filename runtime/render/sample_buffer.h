@@ -1,7 +1,6 @@
 // Which triangle each sample of a picture shows: nearest wins, of equally near ones the one of the
-// greatest number, in whatever order they are drawn. A
-// pixel has four samples, those that 4-sample antialiasing of hardware has; or, without it, one in
-// its middle, kept four times.
+// greatest number, in whatever order they are drawn. A pixel has four samples, those that 4-sample
+// antialiasing of hardware has; or, without it, one in its middle, kept four times.
 #pragma once
 
 #include <array>
@@ -28,7 +27,7 @@ class SampleBuffer {
   void draw(const DrawnCorner& a, const DrawnCorner& b, const DrawnCorner& c, std::uint32_t id);
   // The same of fronts, of which all samples lie in a box of kBoxes[box] pixels a side in the
   // picture, the first of which has the first sample that is not left of or above all corners.
-  // `ids`: by number.
+  // The number of a triangle is first_id + ids[its place in `triangles`].
   static constexpr std::array<int, 2> kBoxes{2, 3};
   void draw_boxed(const SmallTriangles& triangles, const SomeTriangles& boxed, std::size_t box,
                   std::uint32_t first_id, const std::uint32_t* ids);

@@ -13,6 +13,11 @@
 
 namespace probe::render {
 
+// How far a step of a pixel goes right and down at depth 1.
+struct PixelStep {
+  float across = 1, down = 1;
+};
+
 // What a triangle shows where the ray (across, down, 1) meets its plane: numerators that are linear
 // in across and down, over a denominator that is, too.
 struct SeenFace {

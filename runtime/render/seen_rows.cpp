@@ -87,7 +87,7 @@ PROBE_CLONES void to_bytes(const float* __restrict color, std::size_t count,
   }
 }
 
-// Bytes of pixels that follow each other in a row, one fragment each, and their depths; whether
+// Bytes and depths of pixels that follow each other in a row, one triangle in each; whether all of
 // these are depths.
 PROBE_CLONES bool write_run(const std::uint8_t* __restrict red,
                             const std::uint8_t* __restrict green,

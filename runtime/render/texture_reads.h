@@ -9,27 +9,17 @@
 #include <vector>
 
 #include "runtime/render/mipmap.h"
-#include "runtime/render/seen_faces.h"
 
 namespace probe::render {
 
-// How far a step of a pixel goes at depth 1.
-struct PixelStep {
-  float across = 1, down = 1;
-};
-
-// Of a triangle in the middle of a pixel, by what it has by across, by down and in the middle.
-inline Rgb plane(const Rgb& by_across, const Rgb& by_down, const Rgb& at_middle, float across,
-                 float down) {
-  return by_across * across + by_down * down + at_middle;
-}
-
 class TextureReads {
  public:
+  // Of each place: where it is in the texture and how many texels a step of a pixel crosses there,
+  // as MipChain::read takes them.
   struct Places {
     float *u, *v, *texels;
   };
-  // Room for the places of `count` fragments, which are numbered from `first` on. It lasts until
+  // Room for `count` places, which are numbered from `first` on. It lasts until
   // the next call.
   Places add(const MipChain* texture, std::size_t first, std::size_t count);
   // `put(first, count, red, green, blue)` for what was added, 0 .. 255; nothing is to be read then.
