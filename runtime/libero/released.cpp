@@ -22,8 +22,8 @@ constexpr Released kReleased[] = {
 
 std::uint64_t number_of(std::string_view bytes) { return big_endian_number(sha256(bytes)); }
 
-bool has(std::string_view folder, std::size_t number, std::uint64_t Released::*what,
-         std::uint64_t found) {
+bool is_known(std::string_view folder, std::size_t number, std::uint64_t Released::*what,
+              std::uint64_t found) {
   const auto* const known = std::ranges::find_if(kReleased, [&](const Released& one) {
     return one.folder == folder && one.number == number;
   });
@@ -35,11 +35,11 @@ bool has(std::string_view folder, std::size_t number, std::uint64_t Released::*w
 bool is_released_problem(std::string_view folder, std::size_t number, std::string_view text) {
   std::string plain(text);
   std::erase(plain, '\r');
-  return has(folder, number, &Released::problem, number_of(plain));
+  return is_known(folder, number, &Released::problem, number_of(plain));
 }
 
 bool are_released_starts(std::string_view folder, std::size_t number, std::string_view bytes) {
-  return has(folder, number, &Released::starts, number_of(bytes));
+  return is_known(folder, number, &Released::starts, number_of(bytes));
 }
 
 }  // namespace probe::libero

@@ -7,9 +7,10 @@
 
 namespace probe::libero {
 
-// The text of a .bddl file, of the suite in `folder`, by the task's number there.
+// The text of a .bddl file, of the suite in `folder`, by the task's number there; how its lines end
+// is nothing to it. False of a task that the release does not have.
 bool is_released_problem(std::string_view folder, std::size_t number, std::string_view text);
-// The bytes of its .pruned_init file.
+// The same of the bytes of its .pruned_init file.
 bool are_released_starts(std::string_view folder, std::size_t number, std::string_view bytes);
 
 }  // namespace probe::libero

@@ -22,7 +22,7 @@ std::vector<SceneFact> in_place(const plan::Plan& plan, std::string_view task) {
   return facts_in_place(plan, plan.tasks()[plan.find_task(task).value()].scene);
 }
 
-// The table as it is, turned and moved, slippery, and leant.
+// The table with its robot moved and turned, and slippery.
 const char* const kInPlace = R"(
 @allow(confounded, "a test")
 variants of base {
