@@ -63,11 +63,11 @@ Status search_axes(Hunt& hunt) {
     summary.lines.push_back(
         fmt::format("{} more were left out, so what is said is of the part of the space that {} "
                     "(points.csv has why)",
-                    found.left_out, hunt.is_fair()));
+                    found.left_out, hunt.fair_words()));
   const bool are_alike = found.failures.k == 0 || found.failures.k == found.failures.n;
   if (are_alike || found.too_few) {
     summary.lines.push_back(
-        found.failures.n == 0 ? fmt::format("no point that was drawn {}", hunt.is_fair())
+        found.failures.n == 0 ? fmt::format("no point that was drawn {}", hunt.fair_words())
         : found.too_few
             ? fmt::format("{} trials count, which is too few to compare parts of axes: {} have to; "
                           "a search in another folder with --budget {} may have them",

@@ -185,8 +185,8 @@ class BoundarySearch {
           break;
         case BoundaryStatus::kLeftOut:
           line += found.own.n == 0
-                      ? fmt::format("not even the task itself {}", hunt_.is_fair())
-                      : fmt::format("nothing but the task itself {}", hunt_.is_fair()) +
+                      ? fmt::format("not even the task itself {}", hunt_.fair_words())
+                      : fmt::format("nothing but the task itself {}", hunt_.fair_words()) +
                             reason(side, 1, planned);
           break;
         case BoundaryStatus::kRunning:
@@ -195,7 +195,7 @@ class BoundarySearch {
           break;
       }
       if (found.last_level < side.side.levels - 1 && found.status != BoundaryStatus::kLeftOut)
-        line += "; nothing beyond " + last + " " + hunt_.is_fair() +
+        line += "; nothing beyond " + last + " " + hunt_.fair_words() +
                 reason(side, found.last_level + 1, planned);
       hunt_.summary.lines.push_back(line);
       Json one = {{"axis", axis.name},

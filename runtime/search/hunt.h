@@ -40,7 +40,7 @@ struct Hunt {
   }
   // "is fair", of what was tried or not. Where episodes came to no end that counts, that is no word
   // for it.
-  const char* is_fair() const { return summary.invalid > 0 ? "could be tried" : "is fair"; }
+  const char* fair_words() const { return summary.invalid > 0 ? "could be tried" : "is fair"; }
   // Begins the next round, of these points.
   Result<PlannedPoints> plan(std::vector<space::Point> points);
   std::string round_folder(int number) const;
