@@ -681,6 +681,7 @@ class LiberoImport {
     if (files.empty())
       return Failure{Fault::kAsset, "our own robots are not there", robots.string()};
     std::ranges::sort(files);
+    check_robosuite();
     const std::map<std::string, std::string> seen = robot_meshes();
     for (const Path& file : files) {
       const std::string to = file.lexically_relative(options_.own).generic_string();
@@ -692,6 +693,20 @@ class LiberoImport {
       PROBE_TRY(write(to, bytes, "vlaprobe's own"));
     }
     return {};
+  }
+
+  // How the arm moves and is felt is said by our own robot, which is held to one version.
+  void check_robosuite() {
+    std::string others;
+    for (const std::string_view path : released_robosuite_files()) {
+      const auto text = read_file((Path(base_).parent_path() / path).string());
+      if (!text || is_released_robosuite(path, *text)) continue;
+      others += (others.empty() ? "" : ", ") + std::string(path);
+    }
+    if (others.empty()) return;
+    say("odd", "robosuite is not version 1.4.1 (" + others +
+                   "): the arm is that version's whatever they say, and published rates may be of "
+                   "another");
   }
 
   // What robosuite shows of the arm, the gripper and the mount, by the name of our file. Its bodies

@@ -133,6 +133,8 @@ TEST_CASE("a task is imported: its words, its goal, where things begin") {
                                        " of 1 of 1 tasks are not the released ones") !=
           std::string::npos);
   }
+  CHECK(said_by(*report, "odd").find("robosuite is not version 1.4.1 (base.xml): the arm is") !=
+        std::string::npos);
   CHECK(said_by(*report, "missing").find("libero_goal: no task") != std::string::npos);
   CHECK(said_by(*report, "missing").find("probing.probe, which asks all 130 tasks: 1 are there") !=
         std::string::npos);
@@ -407,6 +409,7 @@ TEST_CASE("the reference: 130 tasks, 6,500 starts, nothing left to say by a chec
   CHECK(report->tasks == 130);
   CHECK(report->starts == 6500);
   CHECK(said_by(*report, "odd").find("released ones") == std::string::npos);
+  CHECK(said_by(*report, "odd").find("robosuite") == std::string::npos);
   for (const char* const suite :
        {"libero_spatial", "libero_object", "libero_goal", "libero_10", "libero_90"}) {
     const Compilation built = compiled(to, std::string(suite) + ".probe");
