@@ -130,7 +130,10 @@ Result<Texture> decode_image(std::span<const std::byte> encoded, const std::stri
   const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
       stbi_load_from_memory(bytes, size, &width, &height, &channels, 4), stbi_image_free);
   if (!pixels) {
-    return asset_failure(std::string("cannot decode the image (") + stbi_failure_reason() + ")",
+    const char* const why = stbi_failure_reason();
+    const bool says_why = why != nullptr && *why != '\0';
+    return asset_failure("cannot decode the image (" +
+                             std::string(says_why ? why : "it is damaged or cut off") + ")",
                          where);
   }
   Texture texture{.width = width, .height = height, .rgba = {}};

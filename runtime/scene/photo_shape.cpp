@@ -9,7 +9,8 @@ std::optional<std::string> photo_defect(ImageSize photo, std::uint32_t width,
                                         std::uint32_t height) {
   const double across = static_cast<double>(photo.width) * height;
   const double down = static_cast<double>(photo.height) * width;
-  const double rounding = 1.5 * std::max(width, height);
+  // A pixel, but not where one is all there is of the shape.
+  const double rounding = std::min(1.5 * std::max(width, height), 0.05 * down);
   if (std::abs(across - down) <= std::max(rounding, 0.01 * down)) return std::nullopt;
   const auto size = [](auto w, auto h) { return std::to_string(w) + " x " + std::to_string(h); };
   return "the photo is " + size(photo.width, photo.height) + " pixels, the camera's picture " +
