@@ -48,6 +48,8 @@ std::string_view first_line(std::string_view csv) {
   return trimmed(csv.substr(0, csv.find('\n')));
 }
 
+bool has_open_quote(std::string_view line) { return std::ranges::count(line, '"') % 2 != 0; }
+
 bool is_rate(const PublishedFigure& figure) { return figure.metric == "success_rate"; }
 
 std::string column_of(const PublishedFigure& figure) {
@@ -74,6 +76,11 @@ const PublishedFigure* real_of(const RateTable& table, const PublishedFigure& si
   return found;
 }
 
+// "RT-1-X, visual_matching, drawer_open"
+std::string name_of(const PublishedFigure& figure) {
+  return fmt::format("{}, {}, {}", figure.policy, figure.protocol, column_of(figure));
+}
+
 std::string interval_text(const std::optional<stats::Interval>& interval) {
   return interval ? fmt::format("{:.3f} .. {:.3f}", interval->low, interval->high) : "-";
 }
@@ -87,6 +94,15 @@ Json interval_json(const std::optional<stats::Interval>& interval) {
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file) {
   RateTable table{file, {}, {}};
   const std::vector<std::string> header = csv_cells(first_line(csv));
+  if (first_line(csv).find('\r') != std::string_view::npos) {
+    return Failure{Fault::kUsage, "lines end in a carriage return alone: save it with line feeds",
+                   file + ":1"};
+  }
+  const auto refuse_twice = [&](std::string_view column) -> Status {
+    if (std::ranges::count(header, column) < 2) return {};
+    return Failure{Fault::kUsage, fmt::format("the column `{}` is here twice", column),
+                   file + ":1"};
+  };
   std::array<std::size_t, kNeeded> at{};
   for (std::size_t c = 0; c < kNeeded; ++c) {
     const auto found = std::ranges::find(header, kColumns[c]);
@@ -98,13 +114,16 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
                       kColumns[c]),
           file + ":1"};
     }
+    PROBE_TRY(refuse_twice(kColumns[c]));
     at[c] = static_cast<std::size_t>(found - header.begin());
   }
   std::optional<std::size_t> trials;
   for (const std::string_view name : kTrials) {
+    PROBE_TRY(refuse_twice(name));
     const auto found = std::ranges::find(header, name);
     if (!trials && found != header.end()) trials = static_cast<std::size_t>(found - header.begin());
   }
+  std::map<std::array<std::string, kValue>, std::size_t> lines;  // of the figures
   std::size_t number = 0;
   while (!csv.empty()) {
     const std::size_t end = std::min(csv.find('\n'), csv.size());
@@ -112,6 +131,8 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
     csv.remove_prefix(std::min(end + 1, csv.size()));
     if (++number == 1 || line.empty() || line[0] == '#') continue;
     const std::string where = fmt::format("{}:{}", file, number);
+    if (has_open_quote(line))
+      return Failure{Fault::kUsage, "a quote is not closed on its line", where};
     const std::vector<std::string> cells = csv_cells(line);
     if (cells.size() != header.size()) {
       return Failure{
@@ -121,11 +142,18 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
     PublishedFigure figure;
     std::string* const to[] = {&figure.source, &figure.protocol, &figure.metric,
                                &figure.policy, &figure.task,     &figure.subtask};
-    for (std::size_t c = 0; c < kValue; ++c) *to[c] = printable(cells[at[c]], kLongest);
+    std::array<std::string, kValue> key;
+    for (std::size_t c = 0; c < kValue; ++c) {
+      key[c] = cells[at[c]];
+      *to[c] = printable(key[c], kLongest);
+      if (key[c].empty() && c != kSource && c != kSubtask)
+        return Failure{Fault::kUsage, fmt::format("a row has no {}", kColumns[c]), where};
+    }
     const std::string& written = cells[at[kValue]];
     const auto value = number_of(written);
     if (!value) {
-      table.unread.push_back(where + ": `" + printable(written, kLongest) + "` is no number");
+      table.unread.push_back(fmt::format("{}: {}: `{}` is no number", where, name_of(figure),
+                                         printable(written, kLongest)));
       continue;
     }
     if (is_rate(figure) && !(*value >= 0 && *value <= 1)) {
@@ -146,6 +174,12 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
     const std::size_t point = written.find('.');
     figure.decimals = point == std::string::npos ? 0 : static_cast<int>(written.size() - point - 1);
     figure.line = number;
+    if (const auto [first, is_new] = lines.try_emplace(std::move(key), number); !is_new) {
+      return Failure{Fault::kUsage,
+                     fmt::format("{}: {} of this source is on line {} already", name_of(figure),
+                                 figure.metric, first->second),
+                     where};
+    }
     if (trials && !cells[*trials].empty()) {
       const auto count = number_of(cells[*trials]);
       if (!count || *count < 1 || *count > 1e9 || *count != std::floor(*count)) {
@@ -244,20 +278,22 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
 
 std::vector<AgreementRow> agreements(const RateTable& table) {
   struct Sides {
-    std::vector<std::string> policies;
+    std::vector<std::string> policies, without_real;
     std::vector<stats::MeasuredRate> real, simulated;
   };
   std::vector<std::array<std::string, 4>> order;
   std::map<std::array<std::string, 4>, Sides> columns;
   for (const PublishedFigure& figure : table.figures) {
     if (!is_rate(figure) || figure.protocol == kReal) continue;
-    const PublishedFigure* real = real_of(table, figure);
-    if (real == nullptr) continue;
     const std::array<std::string, 4> key = {figure.source, figure.protocol, figure.task,
                                             figure.subtask};
     if (!columns.contains(key)) order.push_back(key);
     Sides& sides = columns[key];
-    if (std::ranges::find(sides.policies, figure.policy) != sides.policies.end()) continue;
+    const PublishedFigure* real = real_of(table, figure);
+    if (real == nullptr) {
+      sides.without_real.push_back(figure.policy);
+      continue;
+    }
     sides.policies.push_back(figure.policy);
     sides.real.push_back(measured(*real));
     sides.simulated.push_back(measured(figure));
@@ -266,7 +302,19 @@ std::vector<AgreementRow> agreements(const RateTable& table) {
   for (const auto& key : order) {
     const Sides& sides = columns[key];
     if (sides.policies.size() < kFewest) continue;
-    rows.push_back({key[0], key[1], key[2], key[3], sides.policies,
+    std::vector<std::string> without_simulated;
+    for (const PublishedFigure& figure : table.figures) {
+      if (!is_rate(figure) || figure.protocol != kReal || figure.task != key[2] ||
+          figure.subtask != key[3])
+        continue;
+      const auto is_in = [&](const std::vector<std::string>& names) {
+        return std::ranges::find(names, figure.policy) != names.end();
+      };
+      if (!is_in(sides.policies) && !is_in(without_simulated))
+        without_simulated.push_back(figure.policy);
+    }
+    rows.push_back({key[0], key[1], key[2], key[3], sides.policies, sides.without_real,
+                    std::move(without_simulated),
                     stats::rank_agreement(sides.real, sides.simulated)});
   }
   return rows;
@@ -291,7 +339,7 @@ std::vector<StatedAgreement> stated_agreements(const RateTable& table,
     // What was written has a last digit of its own.
     const double half = 0.5 * std::pow(10.0, -figure.decimals);
     const bool is_close = std::abs(computed - figure.value) <= kClose + half + 1e-12;
-    all.push_back({&figure, computed, is_close});
+    all.push_back({&figure, computed, row->policies.size(), is_close});
   }
   return all;
 }
@@ -306,14 +354,49 @@ std::vector<std::string> impossible_rates(const RateTable& table) {
     const auto rate = [&](std::int64_t k) {
       return decimal_text(static_cast<double>(k) / figure.trials, figure.decimals + 1);
     };
-    sentences.push_back(
-        fmt::format("{}:{}: {}, {}, {}: {} is no count of {} trials; nearest: {} ({}) and {} ({})",
-                    table.file, figure.line, figure.policy, figure.protocol, column_of(figure),
-                    decimal_text(figure.value, figure.decimals), n, near.below, rate(near.below),
-                    near.above, rate(near.above)));
+    sentences.push_back(fmt::format(
+        "{}:{}: {}: {} is no count of {} trials; nearest: {} ({}) and {} ({})", table.file,
+        figure.line, name_of(figure), decimal_text(figure.value, figure.decimals), n, near.below,
+        rate(near.below), near.above, rate(near.above)));
   }
   return sentences;
 }
+
+namespace {
+
+std::string column_of(const AgreementRow& row) {
+  return row.subtask == "average" || row.subtask.empty() ? row.task : row.task + "_" + row.subtask;
+}
+
+// Policies that are in no figure of a column as they have one rate of two: a line for all columns
+// of a protocol that lack the same.
+std::string lone_rates_text(const std::vector<AgreementRow>& rows) {
+  std::vector<std::array<std::string, 3>> lines;  // of whom, columns, what
+  const auto add = [&](const AgreementRow& row, const char* side,
+                       const std::vector<std::string>& policies) {
+    if (policies.empty()) return;
+    const std::string of =
+        row.source == row.protocol ? row.source : row.source + ", " + row.protocol;
+    const std::string what = fmt::format("no {} rate of {}", side, fmt::join(policies, ", "));
+    const auto line = std::ranges::find_if(
+        lines, [&](const auto& one) { return one[0] == of && one[2] == what; });
+    if (line == lines.end()) {
+      lines.push_back({of, column_of(row), what});
+    } else {
+      (*line)[1] += ", " + column_of(row);
+    }
+  };
+  for (const AgreementRow& row : rows) {
+    add(row, "real", row.without_real);
+    add(row, "simulated", row.without_simulated);
+  }
+  std::string text;
+  for (const auto& [of, columns, what] : lines)
+    text += fmt::format("{}, {}: {}\n", of, columns, what);
+  return text;
+}
+
+}  // namespace
 
 std::string agreement_text(const RateTable& table) {
   const std::vector<AgreementRow> rows = agreements(table);
@@ -330,17 +413,17 @@ std::string agreement_text(const RateTable& table) {
                       "95 % by trials", "without one", "Pearson", "95 % by trials", "without one");
     }
     const stats::Agreement& a = row.agreement;
-    const std::string column =
-        row.subtask == "average" || row.subtask.empty() ? row.task : row.task + "_" + row.subtask;
-    text += fmt::format("{:<34} {:>8}  {:>6.3f}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n", column,
-                        row.policies.size(), a.violation, interval_text(a.violation_by_trials),
-                        interval_text(a.violation_by_policies),
-                        a.correlation ? fmt::format("{:.3f}", *a.correlation) : "-",
-                        interval_text(a.correlation_by_trials),
-                        interval_text(a.correlation_by_policies));
+    text += fmt::format(
+        "{:<34} {:>8}  {:>6.3f}  {:<16} {:<16}  {:>7}  {:<16} {:<16}\n", column_of(row),
+        row.policies.size(), a.violation, interval_text(a.violation_by_trials),
+        interval_text(a.violation_by_policies),
+        a.correlation ? fmt::format("{:.3f}", *a.correlation) : "-",
+        interval_text(a.correlation_by_trials), interval_text(a.correlation_by_policies));
   }
   if (rows.empty())
     text += "no three policies have a real rate and a simulated one of the same task\n";
+  if (const std::string lone = lone_rates_text(rows); !lone.empty())
+    text += "\npolicies with one rate of two, in none of these figures:\n" + lone;
   const std::vector<StatedAgreement> stated = stated_agreements(table, rows);
   std::map<std::string, std::pair<int, int>> close;  // by source: of how many
   for (const StatedAgreement& one : stated) {
@@ -354,10 +437,11 @@ std::string agreement_text(const RateTable& table) {
                         counts.second, kClose);
   for (const StatedAgreement& one : stated) {
     if (one.is_close) continue;
-    text += fmt::format("{}:{}: {} of {}, {}: {} is written ({}), the rates give {:.3f}\n",
-                        table.file, one.stated->line, one.stated->metric, column_of(*one.stated),
-                        one.stated->protocol, decimal_text(one.stated->value, one.stated->decimals),
-                        one.stated->source, one.computed);
+    text += fmt::format(
+        "{}:{}: {} of {}, {}: {} is written ({}), the rates of {} policies give {:.3f}\n",
+        table.file, one.stated->line, one.stated->metric, column_of(*one.stated),
+        one.stated->protocol, decimal_text(one.stated->value, one.stated->decimals),
+        one.stated->source, one.policies, one.computed);
   }
   const std::vector<std::string> impossible = impossible_rates(table);
   if (!impossible.empty())
@@ -381,6 +465,8 @@ Json agreement_json(const RateTable& table) {
          {"task", row.task},
          {"subtask", row.subtask},
          {"policies", row.policies},
+         {"without_real", row.without_real},
+         {"without_simulated", row.without_simulated},
          {"mmrv", a.violation},
          {"mmrv_by_trials", interval_json(a.violation_by_trials)},
          {"mmrv_without_one", interval_json(a.violation_by_policies)},
@@ -398,6 +484,7 @@ Json agreement_json(const RateTable& table) {
                               {"subtask", one.stated->subtask},
                               {"stated", one.stated->value},
                               {"computed", one.computed},
+                              {"policies", one.policies},
                               {"close", one.is_close}});
   }
   json["impossible"] = impossible_rates(table);

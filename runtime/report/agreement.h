@@ -32,8 +32,9 @@ struct RateTable {
 
 // A CSV of one figure a row, with the columns source, protocol, metric, policy, task, subtask and
 // value in any order. `trials_per_published_protocol` (or `trials`) is read where it is there,
-// other columns are passed over. Fails (kUsage, where = file:line) on a missing column, a row of
-// another length and a success_rate that is not from 0 to 1.
+// other columns are passed over. Fails (kUsage, where = file:line) on a column that is missing or
+// there twice, a row of another length, a line break in a cell, a success_rate that is not from 0
+// to 1, and a figure that the same source gives twice.
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file);
 
 // The protocol of real rates, and what runs that are added are called.
@@ -50,6 +51,7 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark);
 struct AgreementRow {
   std::string source, protocol, task, subtask;
   std::vector<std::string> policies;
+  std::vector<std::string> without_real, without_simulated;  // policies with one rate of the two
   stats::Agreement agreement;
 };
 // Where three policies or more have both rates.
@@ -59,6 +61,7 @@ std::vector<AgreementRow> agreements(const RateTable& table);
 struct StatedAgreement {
   const PublishedFigure* stated = nullptr;
   double computed = 0;
+  std::size_t policies = 0;  // whose rates that is made of
   bool is_close = false;  // within kClose and half of its last digit
 };
 inline constexpr double kClose = 0.003;  // what rounding rates to three digits moves

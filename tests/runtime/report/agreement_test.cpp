@@ -38,7 +38,7 @@ std::string refused(const std::string& csv) {
 
 TEST_CASE("a table of rates gives its violations, what it states beside them, and what no count gives") {
   const RateTable table = parsed(kSmall);
-  CHECK(table.unread == std::vector<std::string>{"t.csv:10: `0.5/0.6` is no number"});
+  CHECK(table.unread == std::vector<std::string>{"t.csv:10: a, sim, lift: `0.5/0.6` is no number"});
   const auto rows = agreements(table);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
@@ -82,6 +82,51 @@ TEST_CASE("two policies are no agreement, and another layout is refused with its
         "t.csv:2: `1.9` is no rate from 0 to 1");
   CHECK(refused(header + "P,real,success_rate,a,lift,average,0.9,ten\n") ==
         "t.csv:2: `ten` is no number of trials");
+}
+
+TEST_CASE("a table that says a thing twice, or not where it is looked for, is refused with its place") {
+  const std::string header = kSmall.substr(0, kSmall.find('\n') + 1);
+  CHECK(refused(kSmall + "P,sim,success_rate,b,lift,average,0.7,20\n") ==
+        "t.csv:11: b, sim, lift: success_rate of this source is on line 6 already");
+  CHECK(refused(kSmall + "P,sim,MMRV,(3),lift,average,0.3,\n") ==
+        "t.csv:11: (3), sim, lift: MMRV of this source is on line 8 already");
+  CHECK(refused("source,protocol,metric,policy,task,subtask,value,value\n"
+                "P,real,success_rate,a,lift,,0.9,0.5\n") ==
+        "t.csv:1: the column `value` is here twice");
+  CHECK(refused(header + "P,real,success_rate,,lift,average,0.9,10\n") ==
+        "t.csv:2: a row has no policy");
+  CHECK(refused(header + "\"P\nQ\",real,success_rate,a,lift,average,0.9,10\n") ==
+        "t.csv:2: a quote is not closed on its line");
+  // Of a row that is left out another may tell the value.
+  CHECK(refused(kSmall + "Q,sim,success_rate,a,lift,average,0.55,20\n") == "fine");
+  std::string lines = kSmall;
+  std::ranges::replace(lines, '\n', '\r');
+  CHECK(refused(lines) == "t.csv:1: lines end in a carriage return alone: save it with line feeds");
+}
+
+TEST_CASE("values that are no number, and policies with one rate of two, are left out by name") {
+  for (const char* value : {"nan", "NaN", "inf", "-inf", "1e9", "9e-1", "0x1", "90%", "+0.9", ""}) {
+    CAPTURE(value);
+    const std::string real = "P,real,success_rate,d,lift,average,";
+    const RateTable table = parsed(kSmall + real + value +
+                                   ",10\nP,sim,success_rate,d,lift,average,0.3,20\n"
+                                   "P,real,success_rate,e,lift,average,0.3,10\n");
+    CHECK(std::ranges::find(table.unread, "t.csv:11: d, real, lift: `" + std::string(value) +
+                                              "` is no number") != table.unread.end());
+    const auto rows = agreements(table);
+    REQUIRE(rows.size() == 1);
+    CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
+    CHECK(rows[0].without_real == std::vector<std::string>{"d"});
+    CHECK(rows[0].without_simulated == std::vector<std::string>{"e"});
+    const std::string text = agreement_text(table);
+    CHECK_MESSAGE(text.find("P, sim, lift: no real rate of d\n") != text.npos, text);
+    CHECK_MESSAGE(text.find("P, sim, lift: no simulated rate of e\n") != text.npos, text);
+    CHECK_MESSAGE(text.find("the rates of 3 policies give") != text.npos, text);
+    CHECK(agreement_json(table)["agreement"][0]["without_real"].dump() == "[\"d\"]");
+  }
+  for (const char* value : {"1.5", "-0.1", "1000000000"})
+    CHECK(refused(kSmall + "P,real,success_rate,d,lift,average," + value + ",10\n") ==
+          "t.csv:11: `" + std::string(value) + "` is no rate from 0 to 1");
 }
 
 TEST_CASE("Table IV of arXiv:2405.05941 is redone to 0.003, and nine of its rates are no counts") {
