@@ -63,10 +63,21 @@ struct Finder {
   DataFolder& data;
   std::vector<fs::path> databases{};
 
+  // Holds folders and nothing else: a shelf of further models.
+  static bool is_shelf(const fs::path& folder) {
+    std::error_code error;
+    bool has_folder = false;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (!entry.is_directory(error)) return false;
+      has_folder = true;
+    }
+    return has_folder;
+  }
+
   void models_below(const fs::path& folder) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.is_directory(error)) {
+      if (entry.is_directory(error) && !is_shelf(entry.path())) {
         data.models.try_emplace(entry.path().filename().string(), entry.path());
       }
     }
@@ -137,7 +148,8 @@ void read_model_database(const fs::path& file, DataFolder& data) {
   }
 }
 
-Result<DataFolder> find_data(const std::string& folder, const std::string& robot) {
+Result<DataFolder> find_data(const std::string& folder, const std::string& robot,
+                             std::span<const std::string_view> descriptions) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) return Failure{Fault::kAsset, "is not a folder", folder};
   DataFolder data;
@@ -150,7 +162,9 @@ Result<DataFolder> find_data(const std::string& folder, const std::string& robot
                      return std::pair(rank(a), a.string()) < std::pair(rank(b), b.string());
                    });
   for (const fs::path& file : finder.databases) read_model_database(file, data);
-  if (data.models.empty() && data.photos.empty() && !data.urdf && data.stages.empty()) {
+  const bool has_robot = std::ranges::any_of(
+      descriptions, [&](std::string_view name) { return data.urdfs.contains(std::string(name)); });
+  if (data.models.empty() && data.photos.empty() && !has_robot && data.stages.empty()) {
     return Failure{Fault::kAsset,
                    "no SimplerEnv data in it: looked six folders deep for `models` (a folder a "
                    "model), `real_inpainting`, `stages` and " +

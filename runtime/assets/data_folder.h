@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -30,8 +32,10 @@ struct DataFolder {
 };
 
 // Looks at most six folders deep. Fails (kAsset) when `folder` is not there, and when it
-// holds none of these, saying what was looked for; `robot`: which description, in words.
-Result<DataFolder> find_data(const std::string& folder, const std::string& robot);
+// holds none of these, saying what was looked for; `robot`: which description, in words;
+// `descriptions`: their file names.
+Result<DataFolder> find_data(const std::string& folder, const std::string& robot,
+                             std::span<const std::string_view> descriptions);
 
 // {"id": {"bbox": {"min": [..], "max": [..]}, "scales": [..], "density": ..}, ..}; an entry that is
 // there already stays. What cannot be used goes to `odd`.

@@ -67,8 +67,7 @@ class Import {
     if (is_google) {
       for (const std::string_view photo : kGooglePhotos) PROBE_TRY(add_photo(std::string(photo)));
       for (const KnownRobot& robot : kGoogleRobots) PROBE_TRY(add_robot(robot));
-      for (const std::string_view name : kGoogleOwn)
-        PROBE_TRY(miss(std::string(name), "the suite's own", own_folder(name)));
+      for (const std::string_view name : kGoogleOwn) PROBE_TRY(take_own(std::string(name)));
     } else {
       for (const KnownScene& scene : kKnownScenes) PROBE_TRY(add_scene(scene));
       PROBE_TRY(add_robot());
@@ -287,6 +286,10 @@ class Import {
     if (urdf == data_.urdfs.end()) return miss(name, "no " + std::string(known.file));
     const auto robot = convert_robot(urdf->second.string(), limits_);
     if (!robot) return miss(name, short_text(robot.failure(), options_.from));
+    for (const RobotFiles::File& file : robot->meshes) {
+      if (known.is_colouring && file.is_untextured)
+        return miss(name, relative(file.source) + " has no texture: it would be plain");
+    }
     // Colourings share meshes of one name: each has a folder of its own.
     const std::string own = "meshes/" + std::string(known.name) + "/";
     for (const RobotFiles::File& file : robot->meshes) {
@@ -321,25 +324,35 @@ class Import {
   // ---- what is not there
 
   // Says so, and takes ours if that was asked for.
-  std::string own_folder(std::string_view name) const {
-    std::error_code error;
-    for (const std::string& folder : options_.own)
-      if (fs::is_directory(fs::path(folder) / name, error)) return folder;
-    return {};
-  }
-
   Status miss(const std::string& name, const std::string& why) {
-    return miss(name, why, options_.fill_from);
-  }
-  Status miss(const std::string& name, const std::string& why, const std::string& from) {
-    const fs::path ours = fs::path(from) / name;
     std::error_code error;
-    if (from.empty() || !fs::is_directory(ours, error)) {
+    const std::string& from = options_.fill_from;
+    if (from.empty() || !fs::is_directory(fs::path(from) / name, error)) {
       say(Verdict::kMissing, name, why);
       return {};
     }
+    PROBE_TRY(copy_ours(name, from));
+    say(Verdict::kFilled, name, why + ": vlaprobe's own is taken");
+    return {};
+  }
+
+  // What the suite is written for and no data has: nothing is missing in the data.
+  Status take_own(const std::string& name) {
+    std::error_code error;
+    for (const std::string& folder : options_.own) {
+      if (!fs::is_directory(fs::path(folder) / name, error)) continue;
+      PROBE_TRY(copy_ours(name, folder));
+      say(Verdict::kOwn, name, "vlaprobe's: no release has it in that form");
+      return {};
+    }
+    say(Verdict::kMissing, name, "the suite's own");
+    return {};
+  }
+
+  Status copy_ours(const std::string& name, const std::string& from) {
+    std::error_code error;
     std::vector<fs::path> paths;
-    for (const auto& entry : fs::recursive_directory_iterator(ours, error)) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(from) / name, error)) {
       if (entry.is_regular_file(error)) paths.push_back(entry.path());
     }
     std::sort(paths.begin(), paths.end());
@@ -348,7 +361,6 @@ class Import {
       const std::string below = path.lexically_relative(from).generic_string();
       PROBE_TRY(out_.write(below, bytes, "vlaprobe's own " + below));
     }
-    say(Verdict::kFilled, name, why + ": vlaprobe's own is taken");
     return {};
   }
 
@@ -372,14 +384,22 @@ const char* to_word(Verdict verdict) {
       return "missing";
     case Verdict::kFilled:
       return "filled";
+    case Verdict::kOwn:
+      return "own";
   }
   return "";
 }
 
 Result<ImportReport> import_data(const ImportOptions& options) {
-  PROBE_ASSIGN(DataFolder data, find_data(options.from, options.suite == ImportFor::kGoogle
-                                                            ? "the Google robot's `.urdf`"
-                                                            : "`wx250s.urdf`"));
+  const bool is_google = options.suite == ImportFor::kGoogle;
+  std::vector<std::string_view> descriptions{"wx250s.urdf"};
+  if (is_google) {
+    descriptions.clear();
+    for (const KnownRobot& robot : kGoogleRobots) descriptions.push_back(robot.file);
+  }
+  PROBE_ASSIGN(DataFolder data,
+               find_data(options.from, is_google ? "the Google robot's `.urdf`" : "`wx250s.urdf`",
+                         descriptions));
   PROBE_ASSIGN(OutputFolder out, OutputFolder::create(options.to));
   return Import(options, std::move(data), std::move(out)).run();
 }

@@ -24,7 +24,8 @@ struct ImportOptions {
   std::vector<std::string> own = {};
 };
 
-enum class Verdict { kTaken, kOdd, kMissing, kFilled };
+// kOwn: copied from ours, as no data has it in that form.
+enum class Verdict { kTaken, kOdd, kMissing, kFilled, kOwn };
 
 // One a thing of the data: a model, a scene, the robot.
 struct ImportLine {

@@ -83,9 +83,10 @@ inline constexpr int kGoogleWidth = 640, kGoogleHeight = 512;  // of the camera'
 struct KnownRobot {
   std::string_view file;  // of the release
   std::string_view name;
+  bool is_colouring = true;  // its meshes are told from the plain one's by their textures
 };
 inline constexpr std::array kGoogleRobots{
-    KnownRobot{"google_robot_meta_sim_fix_wheel_fix_fingertip.urdf", "google_robot"},
+    KnownRobot{"google_robot_meta_sim_fix_wheel_fix_fingertip.urdf", "google_robot", false},
     KnownRobot{
         "google_robot_meta_sim_fix_wheel_fix_fingertip_recolor_tabletop_visual_matching_1.urdf",
         "google_robot_tabletop_1"},

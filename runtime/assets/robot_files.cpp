@@ -99,13 +99,14 @@ Result<RobotFiles> convert_robot(const std::string& urdf, const scene::MeshLimit
     name = stem + use;
     // The same file at another scale, or another of the same name.
     for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}_{}{}", stem, i, use);
-    RobotFiles::File file{name, "", path};
+    RobotFiles::File file{name, "", path, false};
     if (element.is_collision) {
       PROBE_ASSIGN(CollisionFile felt, convert_collision(path, scale, limits, false));
       file.bytes = std::move(felt.obj);
     } else {
       PROBE_ASSIGN(VisualFile seen, convert_visual(path, scale, limits, stem));
       file.bytes = std::move(seen.glb);
+      file.is_untextured = seen.largest_texture == 0;
     }
     robot.meshes.push_back(std::move(file));
     return name;

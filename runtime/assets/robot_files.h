@@ -32,6 +32,7 @@ struct RobotFiles {
     std::string path;  // below the description's folder
     std::string bytes;
     std::string source;
+    bool is_untextured = false;  // to be seen, in colours alone
   };
   std::string urdf;
   std::vector<File> meshes;

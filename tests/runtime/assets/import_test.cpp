@@ -199,6 +199,70 @@ TEST_CASE("for the Google robot's suite: what is there under its names, what is 
   CHECK(fs::exists(folder / "filled/objects/slim_can/visual.glb"));
 }
 
+TEST_CASE("what is copied is the suite's own, not filled in; folders of models are no model") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  const std::string models = folder / "repo/data/custom/models/";
+  write_text(models + "_substitutes/older_can/textured.dae", dae_box("Z_UP"));
+  fs::create_directories(models + "mug");
+  const auto report = import_data(
+      {folder / "repo", folder / "out", "", ImportFor::kGoogle, {VLAPROBE_SOURCE_DIR "/assets"}});
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(says(line_of(*report, "robots/google_robot"), "own "));
+  CHECK(fs::exists(folder / "out/robots/google_robot"));
+  CHECK(std::ranges::none_of(
+      report->lines, [](const ImportLine& line) { return line.verdict == Verdict::kFilled; }));
+  CHECK(line_of(*report, "objects/_substitutes") == "no line");
+  CHECK(says(line_of(*report, "objects/mug"), "missing mug has no textured.glb"));
+}
+
+TEST_CASE("a folder with nothing but the Google robot's description is data for its suite") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  fs::remove_all(folder / "repo/data");
+  const auto report = import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle});
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  CHECK(says(line_of(*report, "robots/google_released/google_robot.urdf"), "taken "));
+  CHECK(says(line_of(*report, "objects/coke_can"), "missing no model"));
+  // Other robots' tasks have no use for it.
+  CHECK(says(to_text(import_data({folder / "repo", folder / "other", ""}).failure()),
+             "no SimplerEnv data in it"));
+}
+
+TEST_CASE("a colouring whose mesh asks for no texture is missing, not plain") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  const std::string description = folder / "repo/descriptions/googlerobot_description/";
+  const std::string name = "robots/google_released/google_robot_cabinet_1.urdf";
+  const std::string urdf =
+      description +
+      "google_robot_meta_sim_fix_wheel_fix_fingertip_recolor_cabinet_visual_matching_1.urdf";
+  std::string text = *read_file(urdf);
+  text.replace(text.find("arm.dae"), 7, "arm.obj");
+  write_text(urdf, text);
+  const auto line = [&](const std::string& out, const std::string& used) {
+    write_text(description + "3obj_recolor/arm.obj",
+               "mtllib arm.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\n"
+               "usemtl " +
+                   used + "\nf 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nf 2/1 3/2 4/3\n");
+    const auto report = import_data({folder / "repo", folder / out, "", ImportFor::kGoogle});
+    REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+    return line_of(*report, name);
+  };
+  write_text(description + "3obj_recolor/arm.mtl",
+             "newmtl brown\nmap_Kd brown.png\nnewmtl white\nKd 1 1 1\n");
+  REQUIRE(scene::write_png(description + "3obj_recolor/brown.png", 2, 2,
+                           std::vector<std::uint8_t>(12, 90))
+              .ok());
+  CHECK(says(line("textured", "brown"), "taken "));
+  for (const char* used : {"white", "unheard"}) {
+    const std::string plain = line(used, used);
+    CHECK(says(plain, "missing "));
+    CHECK(says(plain, "3obj_recolor/arm.obj has no texture"));
+    CHECK_FALSE(fs::exists((folder / used + "/") + name));
+  }
+}
+
 TEST_CASE("tasks whose thing has no mesh in an imported folder are named, with the thing") {
   TemporaryFolder folder;
   make_google_data(folder / "repo");
@@ -232,6 +296,7 @@ TEST_CASE("the released assets of the Google robot lack three things' meshes, an
     if (line.verdict == Verdict::kMissing) missing.push_back(line.name);
     MESSAGE(to_word(line.verdict) << " " << line.name << "  " << line.text);
   }
+  CHECK(line_of(*report, "objects/_substitutes") == "no line");
   for (const char* name : {"objects/slim_can", "objects/water_bottle", "objects/eggplant"})
     CHECK(std::ranges::find(missing, name) != missing.end());
   CHECK(std::ranges::none_of(missing,
