@@ -274,7 +274,7 @@ class Auditor {
     std::string_view metric, message;
     bool operator<(const Rule& other) const { return kind < other.kind; }
   };
-  void add_rule(const Rule& rule_kind, std::uint32_t task) {
+  void add_rule(const Rule& rule_kind, std::uint32_t task, std::uint32_t start = 0) {
     const plan::SpanRecord* span = rule(plan_.tasks()[task], rule_kind.metric);
     const auto key =
         std::pair(rule_kind.kind, span == nullptr ? std::pair(plan::kNone, plan::kNone)
@@ -284,6 +284,8 @@ class Auditor {
       Finding finding;
       finding.kind = rule_kind.kind;
       finding.message = std::string(rule_kind.message);
+      if (start != 0)
+        finding.message += fmt::format(", where `{}` begins as in start {}", name_of(task), start);
       finding.place = place(span);
       add(std::move(finding));
     }
@@ -322,16 +324,12 @@ class Auditor {
                                "last one"};
     constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
                              "`success` is true before anything has moved: things begin so"};
-    std::map<std::uint32_t, bool> counts_target;  // by program
     for (const std::uint32_t index : scope_) {
       const plan::TaskRecord& task = plan_.tasks()[index];
       const auto metrics = plan_.metrics(task);
       if (const auto wrong = plan_.find_metric(task, "wrong")) {
-        const auto [known, is_new] = counts_target.try_emplace(task.program, false);
-        if (is_new) {
-          PROBE_ASSIGN(known->second, wrong_counts_target(plan_, index, *wrong));
-        }
-        if (known->second) add_rule(kTarget, index);
+        PROBE_ASSIGN(const BrokenIn counts, wrong_counts_target(plan_, index, *wrong));
+        if (counts) add_rule(kTarget, index, *counts);
         const auto latches = [](const plan::MetricRecord& metric) {
           return metric.readout == static_cast<std::uint32_t>(plan::Readout::kOnce);
         };
@@ -343,22 +341,22 @@ class Auditor {
         const bool at_end =
             metrics[*success].readout == static_cast<std::uint32_t>(plan::Readout::kAtEnd);
         if (at_end && ends_in_grasp(plan_, index, *success)) add_rule(kGrasp, index);
-        PROBE_ASSIGN(const bool beside, passes_beside(plan_, index, *success));
-        if (beside && !goes_beside(plan_, index)) add_rule(kOnTable, index);
-        PROBE_ASSIGN(const bool on_fixture, passes_on_fixture(plan_, index, *success));
-        if (on_fixture) add_rule(kOnFixture, index);
-        PROBE_ASSIGN(const bool held, passes_held(plan_, index, *success));
-        if (held) add_rule(kHeld, index);
+        PROBE_ASSIGN(const BrokenIn beside, passes_beside(plan_, index, *success));
+        if (beside && !goes_beside(plan_, index)) add_rule(kOnTable, index, *beside);
+        PROBE_ASSIGN(const BrokenIn on_fixture, passes_on_fixture(plan_, index, *success));
+        if (on_fixture) add_rule(kOnFixture, index, *on_fixture);
+        PROBE_ASSIGN(const BrokenIn held, passes_held(plan_, index, *success));
+        if (held) add_rule(kHeld, index, *held);
         PROBE_ASSIGN(const SeveralPut several, passes_of_several(plan_, index, *success));
-        if (several.beside) add_rule(kOneOnTable, index);
-        if (several.held) add_rule(kOneHeld, index);
-        if (several.is_one || several.is_known) {
+        if (several.beside) add_rule(kOneOnTable, index, *several.beside);
+        if (several.held) add_rule(kOneHeld, index, *several.held);
+        if (several.is_tried) {
           ++audit_.tried;
         } else {
           audit_.untried.push_back(name_of(index));
         }
-        PROBE_ASSIGN(const bool in_the_air, passes_in_the_air(plan_, index, *success));
-        if (in_the_air) add_rule(kAir, index);
+        PROBE_ASSIGN(const BrokenIn in_the_air, passes_in_the_air(plan_, index, *success));
+        if (in_the_air) add_rule(kAir, index, *in_the_air);
         if (at_end && counts_an_earlier_touch(plan_, index, *success)) add_rule(kTouched, index);
         PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
         if (begun) add_rule(kBegun, index);

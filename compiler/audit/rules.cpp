@@ -32,9 +32,10 @@ Vec3 beside(const vm::MadeUpWorld& world) {
 }
 
 // Whether the source may lie on the target, or in it: else it is not there that success wants it.
-Result<bool> may_lie_there(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+Result<bool> may_lie_there(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
+                           std::uint32_t start) {
   for (const auto relation : {plan::SkillRelation::kOn, plan::SkillRelation::kIn}) {
-    vm::MadeUpWorld world = vm::make_up_world(plan, task);
+    vm::MadeUpWorld world = vm::make_up_world(plan, task, start);
     vm::put_at(plan, plan.tasks()[task], world.source, {world.target, plan::kNone, relation}, 0,
                &world);
     vm::put_contacts_in_order(&world);
@@ -49,46 +50,65 @@ bool has_both(const plan::Plan& plan, std::uint32_t task) {
   return plan::roles_of(plan.tables(), plan.tasks()[task]).has_both();
 }
 
+// The first kind of start of which `asks` says that the metric is true after something was done.
+// What is so before is not so because of it: things are not where they begin here, as in a drawer.
+template <typename Ask>
+Result<BrokenIn> first_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t metric,
+                             Ask asks) {
+  for (const std::uint32_t start : vm::kinds_of_starts(plan, task)) {
+    PROBE_ASSIGN(const bool is_so_anyway,
+                 vm::judge_world(plan, task, metric, vm::make_up_world(plan, task, start)));
+    if (is_so_anyway) continue;
+    PROBE_ASSIGN(const bool is_so, asks(start));
+    if (is_so) return BrokenIn(start);
+  }
+  return BrokenIn();
+}
+
 }  // namespace
 
-Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong) {
-  if (!has_both(plan, task)) return false;
-  vm::MadeUpWorld world = vm::make_up_world(plan, task);
-  // What is so before anything was moved is not so because the target was: things are not where
-  // they begin here, as in a drawer.
-  PROBE_ASSIGN(const bool is_so_anyway, vm::judge_world(plan, task, wrong, world));
-  if (is_so_anyway) return false;
-  world.put(world.target, world.sample.bodies[world.target].position + Vec3(0.1, 0, 0));
-  return vm::judge_world(plan, task, wrong, std::move(world));
+Result<BrokenIn> wrong_counts_target(const plan::Plan& plan, std::uint32_t task,
+                                     std::uint32_t wrong) {
+  if (!has_both(plan, task)) return BrokenIn();
+  return first_start(plan, task, wrong, [&](std::uint32_t start) -> Result<bool> {
+    vm::MadeUpWorld world = vm::make_up_world(plan, task, start);
+    world.put(world.target, world.sample.bodies[world.target].position + Vec3(0.1, 0, 0));
+    return vm::judge_world(plan, task, wrong, std::move(world));
+  });
 }
 
-Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
-  if (!has_both(plan, task)) return false;
-  if (plan.scenes()[plan.tasks()[task].scene].fixture_collision != plan::kNone) return false;
-  vm::MadeUpWorld world = vm::make_up_world(plan, task);
-  Vec3 at = beside(world);
-  at.z() = world.sample.bodies[world.source].position.z();
-  world.put(world.source, at);
-  for (const std::uint16_t body : {world.source, world.target})
-    world.press_down(body, world.surface);
-  PROBE_ASSIGN(const bool holds, vm::judge_world(plan, task, success, std::move(world)));
-  return holds ? may_lie_there(plan, task, success) : Result<bool>(false);
-}
-
-Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
-  if (!has_both(plan, task)) return false;
-  if (plan.scenes()[plan.tasks()[task].scene].fixture_collision == plan::kNone) return false;
-  for (double height = 0; height <= kHighest; height += kLedge) {
-    vm::MadeUpWorld world = vm::make_up_world(plan, task);
+Result<BrokenIn> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return BrokenIn();
+  if (plan.scenes()[plan.tasks()[task].scene].fixture_collision != plan::kNone) return BrokenIn();
+  return first_start(plan, task, success, [&](std::uint32_t start) -> Result<bool> {
+    vm::MadeUpWorld world = vm::make_up_world(plan, task, start);
     Vec3 at = beside(world);
-    at.z() += height - world.starts[world.target].half.z() + world.starts[world.source].half.z();
+    at.z() = world.sample.bodies[world.source].position.z();
     world.put(world.source, at);
     for (const std::uint16_t body : {world.source, world.target})
-      world.press_down(body, world.fixture);
-    PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
-    if (passes) return true;
-  }
-  return false;
+      world.press_down(body, world.surface);
+    PROBE_ASSIGN(const bool holds, vm::judge_world(plan, task, success, std::move(world)));
+    return holds ? may_lie_there(plan, task, success, start) : Result<bool>(false);
+  });
+}
+
+Result<BrokenIn> passes_on_fixture(const plan::Plan& plan, std::uint32_t task,
+                                   std::uint32_t success) {
+  if (!has_both(plan, task)) return BrokenIn();
+  if (plan.scenes()[plan.tasks()[task].scene].fixture_collision == plan::kNone) return BrokenIn();
+  return first_start(plan, task, success, [&](std::uint32_t start) -> Result<bool> {
+    for (double height = 0; height <= kHighest; height += kLedge) {
+      vm::MadeUpWorld world = vm::make_up_world(plan, task, start);
+      Vec3 at = beside(world);
+      at.z() += height - world.starts[world.target].half.z() + world.starts[world.source].half.z();
+      world.put(world.source, at);
+      for (const std::uint16_t body : {world.source, world.target})
+        world.press_down(body, world.fixture);
+      PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
+      if (passes) return true;
+    }
+    return false;
+  });
 }
 
 namespace {
@@ -110,17 +130,19 @@ std::vector<Vec3> held_at(const plan::Plan& plan, const plan::TaskRecord& task,
 
 }  // namespace
 
-Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
-  if (!has_both(plan, task)) return false;
-  const vm::MadeUpWorld still = vm::make_up_world(plan, task);
-  for (const Vec3& place : held_at(plan, plan.tasks()[task], still)) {
-    vm::MadeUpWorld world = still;
-    world.put(world.source, place);
-    world.hold_source();
-    PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
-    if (passes) return true;
-  }
-  return false;
+Result<BrokenIn> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+  if (!has_both(plan, task)) return BrokenIn();
+  return first_start(plan, task, success, [&](std::uint32_t start) -> Result<bool> {
+    const vm::MadeUpWorld still = vm::make_up_world(plan, task, start);
+    for (const Vec3& place : held_at(plan, plan.tasks()[task], still)) {
+      vm::MadeUpWorld world = still;
+      world.put(world.source, place);
+      world.hold_source();
+      PROBE_ASSIGN(const bool passes, vm::judge_world(plan, task, success, std::move(world)));
+      if (passes) return true;
+    }
+    return false;
+  });
 }
 
 namespace {
@@ -136,9 +158,9 @@ enum class Amiss : std::uint8_t { kNothing, kBeside, kHeld };
 // Worlds one after the other, the first with nothing put, the last with all, one of them amiss;
 // `place`: which of held_at.
 std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t task,
-                                       std::span<const PutThing> puts, std::size_t odd, Amiss amiss,
-                                       std::size_t place = 0) {
-  std::vector<vm::MadeUpWorld> worlds = {vm::make_up_world(plan, task)};
+                                       const vm::MadeUpWorld& still, std::span<const PutThing> puts,
+                                       std::size_t odd, Amiss amiss, std::size_t place = 0) {
+  std::vector<vm::MadeUpWorld> worlds = {still};
   for (std::size_t count = 1; count <= puts.size(); ++count) {
     vm::MadeUpWorld world = worlds.front();
     for (std::size_t i = 0; i < count; ++i) {
@@ -167,6 +189,61 @@ std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t tas
   return worlds;
 }
 
+// Of one kind of start.
+Status try_several(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
+                   std::uint32_t start, SeveralPut* found) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  const std::uint32_t objects = plan::roles_of(plan.tables(), record).objects;
+  const vm::MadeUpWorld still = vm::make_up_world(plan, task, start);
+  PROBE_ASSIGN(const bool is_so_anyway, vm::judge_world(plan, task, success, still));
+  if (is_so_anyway) return {};
+  const auto said = plan::skills_of(plan.tables(), task);
+  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+  if (skills.empty()) {
+    PROBE_ASSIGN(skills, vm::derive_solution(plan, task, start));
+  }
+  std::vector<PutThing> puts;
+  bool is_plain = !skills.empty();
+  for (const plan::SkillRecord& skill : skills) {
+    const bool is_put = static_cast<plan::Skill>(skill.skill) == plan::Skill::kPut;
+    is_plain = is_plain && is_put && skill.region == plan::kNone && skill.to < objects;
+    if (is_put)
+      puts.push_back({static_cast<std::uint16_t>(skill.body),
+                      {skill.to, skill.region, static_cast<plan::SkillRelation>(skill.relation)}});
+  }
+  if (!skills.empty() && puts.size() < 2) return {};
+  bool is_known = is_plain;
+  if (is_plain) {
+    PROBE_ASSIGN(is_known,
+                 vm::judge_worlds(plan, task, success,
+                                  worlds_of(plan, task, still, puts, 0, Amiss::kNothing)));
+  }
+  if (!is_known) {
+    found->is_tried = false;
+    return {};
+  }
+  const bool on_surface = plan.scenes()[record.scene].fixture_collision == plan::kNone;
+  for (std::size_t i = 0; i < puts.size(); ++i) {
+    if (!found->beside && on_surface && puts[i].place.relation != plan::SkillRelation::kBeside) {
+      PROBE_ASSIGN(const bool beside,
+                   vm::judge_worlds(plan, task, success,
+                                    worlds_of(plan, task, still, puts, i, Amiss::kBeside)));
+      if (beside) found->beside = start;
+    }
+    vm::MadeUpWorld about = still;
+    about.source = puts[i].object;
+    about.target = static_cast<std::uint16_t>(puts[i].place.to);
+    const std::size_t places = held_at(plan, record, about).size();
+    for (std::size_t place = 0; place < places && !found->held; ++place) {
+      PROBE_ASSIGN(const bool held,
+                   vm::judge_worlds(plan, task, success,
+                                    worlds_of(plan, task, still, puts, i, Amiss::kHeld, place)));
+      if (held) found->held = start;
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
@@ -180,42 +257,8 @@ Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
     movable += has_role && o != roles.target && !roles.is_distractor(o);
   }
   if (movable < 2 || plan.episodes(record).empty()) return found;
-  const auto said = plan::skills_of(plan.tables(), task);
-  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
-  if (skills.empty()) {
-    PROBE_ASSIGN(skills, vm::derive_solution(plan, task));
-  }
-  std::vector<PutThing> puts;
-  bool is_plain = !skills.empty();
-  for (const plan::SkillRecord& skill : skills) {
-    const bool is_put = static_cast<plan::Skill>(skill.skill) == plan::Skill::kPut;
-    is_plain = is_plain && is_put && skill.region == plan::kNone && skill.to < roles.objects;
-    if (is_put)
-      puts.push_back({static_cast<std::uint16_t>(skill.body),
-                      {skill.to, skill.region, static_cast<plan::SkillRelation>(skill.relation)}});
-  }
-  found.is_one = !skills.empty() && puts.size() < 2;
-  if (found.is_one || !is_plain) return found;
-  PROBE_ASSIGN(found.is_known, vm::judge_worlds(plan, task, success,
-                                                worlds_of(plan, task, puts, 0, Amiss::kNothing)));
-  const bool on_surface = plan.scenes()[record.scene].fixture_collision == plan::kNone;
-  for (std::size_t i = 0; found.is_known && i < puts.size(); ++i) {
-    if (on_surface && puts[i].place.relation != plan::SkillRelation::kBeside) {
-      PROBE_ASSIGN(
-          const bool beside,
-          vm::judge_worlds(plan, task, success, worlds_of(plan, task, puts, i, Amiss::kBeside)));
-      found.beside = found.beside || beside;
-    }
-    vm::MadeUpWorld still = vm::make_up_world(plan, task);
-    still.source = puts[i].object;
-    still.target = static_cast<std::uint16_t>(puts[i].place.to);
-    const std::size_t places = held_at(plan, record, still).size();
-    for (std::size_t place = 0; place < places && !found.held; ++place) {
-      PROBE_ASSIGN(found.held,
-                   vm::judge_worlds(plan, task, success,
-                                    worlds_of(plan, task, puts, i, Amiss::kHeld, place)));
-    }
-  }
+  for (const std::uint32_t start : vm::kinds_of_starts(plan, task))
+    PROBE_TRY(try_several(plan, task, success, start, &found));
   return found;
 }
 
@@ -247,15 +290,16 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
   return false;
 }
 
-Result<bool> passes_in_the_air(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+Result<BrokenIn> passes_in_the_air(const plan::Plan& plan, std::uint32_t task,
+                                   std::uint32_t success) {
   constexpr double kAbove = 0.3;  // m
   const auto roles = plan::roles_of(plan.tables(), plan.tasks()[task]);
-  if (!roles.has_source() || roles.has_both()) return false;
-  vm::MadeUpWorld world = vm::make_up_world(plan, task);
-  PROBE_ASSIGN(const bool is_so_anyway, vm::judge_world(plan, task, success, world));
-  if (is_so_anyway) return false;
-  world.put(world.source, world.sample.bodies[world.source].position + Vec3(0, 0, kAbove));
-  return vm::judge_world(plan, task, success, std::move(world));
+  if (!roles.has_source() || roles.has_both()) return BrokenIn();
+  return first_start(plan, task, success, [&](std::uint32_t start) -> Result<bool> {
+    vm::MadeUpWorld world = vm::make_up_world(plan, task, start);
+    world.put(world.source, world.sample.bodies[world.source].position + Vec3(0, 0, kAbove));
+    return vm::judge_world(plan, task, success, std::move(world));
+  });
 }
 
 bool counts_an_earlier_touch(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {

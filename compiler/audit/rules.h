@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "runtime/base/result.h"
@@ -10,39 +11,49 @@
 
 namespace probe::audit {
 
-// Whether metric `wrong` is true when the target alone was moved, by 10 cm, and not before.
-Result<bool> wrong_counts_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t wrong);
+// Where a rule is broken: the first start of a kind in which it is. Each kind is asked about, as
+// joints begin there and objects are turned; none: in no start.
+using BrokenIn = std::optional<std::uint32_t>;
 
-// Whether metric `success` is true of a source that lies on the surface beside the target, so that
-// their boxes do not overlap, where one that lies on the target or in it passes as well. Never of a scene with a fixture, where the surface is not what things
-// lie on.
-Result<bool> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+// Metric `wrong` is true when the target alone was moved, by 10 cm, and not before.
+Result<BrokenIn> wrong_counts_target(const plan::Plan& plan, std::uint32_t task,
+                                     std::uint32_t wrong);
+
+// Metric `success` is true of a source that lies on the surface beside the target, so that
+// their boxes do not overlap, where one that lies on the target or in it passes as well. Never of a
+// scene with a fixture, where the surface is not what things lie on.
+Result<BrokenIn> passes_beside(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
 // The same of a source that nothing but the scene's fixture holds up, at a height up to 10 cm above
 // the target's lower side. Never of a scene without a fixture.
-Result<bool> passes_on_fixture(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+Result<BrokenIn> passes_on_fixture(const plan::Plan& plan, std::uint32_t task,
+                                   std::uint32_t success);
 
-// Whether metric `success` is true of a source that was brought over the target and is still held
+// Metric `success` is true of a source that was brought over the target and is still held
 // there: both fingers press it, half a millimetre above the target or in the middle of a region of
 // the target's own, and nothing else touches it.
-Result<bool> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
-// The same of a world in which nothing has moved and objects lie far apart, of a task that measures
-// joints of fixtures: a drawer that is to be opened begins open in some start.
+Result<BrokenIn> passes_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+
+// Whether metric `success` is true where nothing has moved: of a world in which objects lie far
+// apart, of a task that measures joints of fixtures (a drawer that is to be opened begins open in
+// some start); or of what a layout puts on another thing or into a region.
 Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
 
 // The same two questions of tasks that put several things somewhere, asked of each of these while
 // the others are where they belong, put there in their order.
 struct SeveralPut {
-  bool is_one = true;       // one thing is put, or none: the questions above are all
-  bool is_known = false;    // where things belong was found out, so each was asked about
-  bool beside = false, held = false;  // true of one that lies on the surface; that is still held
+  // In each kind of start one thing is put, or none, so that the questions above are all; or where
+  // things belong was found out, so each was asked about.
+  bool is_tried = true;
+  BrokenIn beside, held;  // by one that lies on the surface; that is still held
 };
 Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
                                      std::uint32_t success);
 
-// Of a task with a source and no target: whether metric `success` is true of one that is 30 cm above
+// Of a task with a source and no target: metric `success` is true of one that is 30 cm above
 // where it lay and touches nothing, and is not so where it lies.
-Result<bool> passes_in_the_air(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+Result<BrokenIn> passes_in_the_air(const plan::Plan& plan, std::uint32_t task,
+                                   std::uint32_t success);
 
 // Whether a metric that is read at the end depends on whether two bodies have ever touched.
 bool counts_an_earlier_touch(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);

@@ -514,11 +514,16 @@ Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task) {
   const auto said = plan::skills_of(plan.tables(), task);
   const auto success = plan.find_metric(plan.tasks()[task], "success");
   if (!success) return false;
-  std::vector<plan::SkillRecord> skills(said.begin(), said.end());
-  if (skills.empty()) {
-    PROBE_ASSIGN(skills, derive_solution(plan, task));
+  for (const std::uint32_t start : kinds_of_starts(plan, task)) {
+    std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+    if (skills.empty()) {
+      PROBE_ASSIGN(skills, derive_solution(plan, task, start));
+    }
+    PROBE_ASSIGN(const bool is_either,
+                 Deriver(plan, task, *success, start).holds_either_way(skills));
+    if (is_either) return true;
   }
-  return Deriver(plan, task, *success).holds_either_way(skills);
+  return false;
 }
 
 }  // namespace probe::vm

@@ -27,8 +27,8 @@ Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, s
 // so.
 Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task);
 
-// Whether the task is solved by putting two things somewhere, as its text says or as is derived, and
-// success is true whichever of them is put first.
+// Whether the task is solved by putting two things somewhere, as its text says or as is derived,
+// and success is true whichever of them is put first, in some kind of start.
 Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task);
 
 }  // namespace probe::vm

@@ -347,6 +347,31 @@ TEST_CASE("a thing that begins on another while a drawer is shut, in one start a
   CHECK(!holds("0", "0.13"));
 }
 
+TEST_CASE("a rule that passes too much in another start than the first is found, with that start") {
+  // The middle of a can that stands beside the plate is 2.8 cm above that of the plate, of one that
+  // lies 1.4 cm.
+  const auto with = [](const std::string& turns, const std::string& metrics) {
+    return audit_text(
+        "use \"std/place.probe\"\nlayout turning like grid_24 { orient source " + turns +
+        "; orient target yaw 0deg }\nmetrics m like put_clean { " + metrics +
+        " }\ntask t like carrot_on_plate { source coke_can; layout turning; metrics m }\n"
+        "suite own { tasks { t }; seeds 1 }\n");
+  };
+  const std::string tall =
+      "success = at end (distance_xy(source, target) < 20cm and height(source) - height(target) > "
+      "2cm)";
+  const std::string stands_first = "roll 90deg, roll 0deg", lies_first = "roll 0deg, roll 90deg";
+  for (const std::string& turns : {lies_first, stands_first}) {
+    CAPTURE(turns);
+    const Audited own = with(turns, tall);
+    const audit::Finding* beside = own.find(Kind::kBeside, "t");
+    REQUIRE(beside != nullptr);
+    const bool says = beside->message.find("where `t` begins as in start 1") != std::string::npos;
+    CHECK(says == (turns == lies_first));
+  }
+  CHECK(with("roll 0deg, roll 0deg", tall).find(Kind::kBeside, "t") == nullptr);
+}
+
 TEST_CASE("what is to lie between two things may lie beside one of them") {
   const Audited own = audit_text(
       "use \"std/space.probe\"\nrole helper\n"
