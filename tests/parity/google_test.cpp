@@ -307,3 +307,119 @@ TEST_CASE("what the Google robot handles weighs, and rubs, as released") {
   }
   CHECK(seen == theirs.size());
 }
+
+TEST_CASE("the published rates of the Google suite are those of Table IV, to the digit") {
+  std::ifstream file(VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_table.csv");
+  std::string line;
+  if (!std::getline(file, line)) {
+    MESSAGE("skipped: the published rates of the Google robot are not on this machine");
+    return;
+  }
+  const std::vector<std::string> header = cells_of(line);
+  std::map<std::string, double> rates;  // "visual_matching RT-1-X drawer_open", in percent
+  while (std::getline(file, line)) {
+    if (!line.starts_with("arXiv:2405.05941v1 Table IV,")) continue;
+    const std::vector<std::string> cells = cells_of(line);
+    Row row;
+    for (std::size_t c = 0; c < std::min(cells.size(), header.size()); ++c)
+      row[header[c]] = cells[c];
+    if (row["metric"] != "success_rate") continue;
+    const std::string part = row["subtask"] == "average" ? "" : "_" + row["subtask"];
+    rates[row["protocol"] + " " + row["policy"] + " " + row["task"] + part] =
+        100 * std::stod(row["value"]);
+  }
+  for (const auto& [protocol, name] : {std::pair{"visual_matching", "visual_matching"},
+                                       std::pair{"variant_aggregation", "variants"}}) {
+    std::ifstream ours(VLAPROBE_SOURCE_DIR "/suite/google/published_" + std::string(name) + ".csv");
+    REQUIRE(std::getline(ours, line));
+    const std::vector<std::string> columns = cells_of(line);
+    std::size_t count = 0;
+    while (std::getline(ours, line)) {
+      const std::vector<std::string> cells = cells_of(line);
+      REQUIRE(cells.size() == columns.size());
+      for (std::size_t c = 2; c < cells.size(); ++c) {
+        const auto theirs = rates.find(std::string(protocol) + " " + cells[0] + " " + columns[c]);
+        CAPTURE(cells[0]);
+        CAPTURE(columns[c]);
+        REQUIRE(theirs != rates.end());
+        CHECK(std::stod(cells[c]) == doctest::Approx(theirs->second).epsilon(1e-9));
+        ++count;
+      }
+    }
+    CHECK(count == 6 * 9);
+  }
+}
+
+TEST_CASE(
+    "each of the 42 registered environments of the Google robot is a task here, but for one") {
+  const auto list = read_file(VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_tasks.json");
+  if (!list) {
+    MESSAGE("skipped: the released environments of the Google robot are not on this machine");
+    return;
+  }
+  // By the id without `InScene` and `-v0`: one of its tasks.
+  const std::map<std::string, const char*> ours = {
+      {"GraspSingleCustom", "pick_heavy_apple"},
+      {"GraspSingleCustomOrientation", "pick_vertical"},
+      {"GraspSingleRandomObject", "pick_eggplant"},
+      {"GraspSingleCokeCan", "pick_full_coke"},
+      {"GraspSingleOpenedCokeCan", "pick_horizontal"},
+      {"GraspSingleAltDensityOpenedCokeCan", "pick_denser_coke"},
+      {"GraspSingleOpenedCokeCanAltGoogleCamera", "pick_standing_lower"},
+      {"GraspSingleOpenedCokeCanAltGoogleCamera2", "pick_standing_higher"},
+      {"GraspSingleOpenedCokeCanDistractor", "pick_standing_among_more"},
+      {"GraspSinglePepsiCan", "pick_full_pepsi"},
+      {"GraspSingleOpenedPepsiCan", "pick_pepsi"},
+      {"GraspSingle7upCan", "pick_full_seven_up"},
+      {"GraspSingleOpened7upCan", "pick_seven_up"},
+      {"GraspSingleSpriteCan", "pick_full_sprite"},
+      {"GraspSingleOpenedSpriteCan", "pick_sprite"},
+      {"GraspSingleFantaCan", "pick_full_fanta"},
+      {"GraspSingleOpenedFantaCan", "pick_fanta"},
+      {"GraspSingleRedBullCan", "pick_full_redbull"},
+      {"GraspSingleOpenedRedBullCan", "pick_redbull"},
+      {"GraspSingleBluePlasticBottle", "pick_bottle"},
+      {"GraspSingleApple", "pick_heavy_apple"},
+      {"GraspSingleOrange", "pick_heavy_orange"},
+      {"GraspSingleSponge", "pick_sponge"},
+      {"GraspSingleBridgeSpoon", "pick_spoon"},
+      {"MoveNearGoogle", "coke_near_redbull_by_apple_alone"},
+      {"MoveNearGoogleBakedTex", "coke_near_redbull_by_apple"},
+      {"MoveNearGoogleBakedTex-v1", "coke_near_redbull_by_apple"},
+      {"MoveNearAltGoogleCamera", "coke_near_redbull_by_apple_lower"},
+      {"MoveNearAltGoogleCamera2", "coke_near_redbull_by_apple_higher"},
+      {"OpenDrawerCustom", "open_bottom"},
+      {"OpenTopDrawerCustom", "open_top"},
+      {"OpenMiddleDrawerCustom", "open_middle"},
+      {"OpenBottomDrawerCustom", "open_bottom"},
+      {"CloseDrawerCustom", "close_bottom"},
+      {"CloseTopDrawerCustom", "close_top"},
+      {"CloseMiddleDrawerCustom", "close_middle"},
+      {"CloseBottomDrawerCustom", "close_bottom"},
+      {"PlaceIntoClosedDrawerCustom", "place_apple_bottom"},
+      {"PlaceIntoClosedTopDrawerCustom", "place_apple"},
+      {"PlaceIntoClosedMiddleDrawerCustom", "place_apple_middle"},
+      {"PlaceIntoClosedBottomDrawerCustom", "place_apple_bottom"}};
+  std::map<std::string, std::uint32_t> horizons;
+  for (const char* suite : {"google", "google_variants_run"}) {
+    const plan::Plan plan = plan_of(suite);
+    for (const plan::TaskRecord& task : plan.tables().tasks)
+      horizons[std::string(plan.text(task.name))] = task.horizon;
+  }
+  std::size_t seen = 0;
+  const Json released = Json::parse(*list)["registered_env_ids"];
+  for (const Json& entry : released) {
+    std::string id = entry["env_id"].get<std::string>();
+    for (const char* end : {"-v0", "InScene"}) {
+      if (const std::size_t at = id.find(end); at != id.npos) id.erase(at, std::string(end).size());
+    }
+    if (id == "GraspSingleDummy") continue;  // a robot in free space
+    CAPTURE(id);
+    REQUIRE(ours.contains(id));
+    REQUIRE_MESSAGE(horizons.contains(ours.at(id)), ours.at(id));
+    CHECK(horizons[ours.at(id)] == entry["max_steps"].get<std::uint32_t>());
+    ++seen;
+  }
+  CHECK(seen == 41);
+  CHECK(seen == ours.size());
+}
