@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <system_error>
@@ -62,6 +63,7 @@ void add_text_verbs(Verb program, int& exit, PhraseDrawing draw_phrases) {
 }
 
 int run_program(int argc, char** argv, AddVerbs add_verbs, bool is_whole) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an answer of write()
   CommandLine line(kAbout, kExample, version());
   int exit = kFine;
   add_verbs(line.program(), exit);

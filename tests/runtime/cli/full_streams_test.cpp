@@ -28,4 +28,16 @@ TEST_CASE("data that cannot be written is a failure with its place") {
   CHECK(contains(outcome.out, "standard output"));
 }
 
+TEST_CASE("a file that may not grow is a failure with its place, and the run goes on afterwards") {
+  const Sandbox box;
+  const std::string run = "'" VLAPROBE_BINARY_DIR
+                          "/vlaprobe' run \"$SUITE\" --tasks carrot_on_plate --episodes 0-0 "
+                          "--policy null -o limited";
+  const Outcome limited = box.run("ulimit -f 64; " + run);  // of 512 bytes
+  CHECK(limited.exit == 2);
+  CHECK_MESSAGE(contains(limited.err, "vlaprobe: "), limited.err);
+  const Outcome whole = box.run(run);
+  CHECK_MESSAGE(whole.exit == 0, whole.err);
+}
+
 }  // namespace probe::test

@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# tests/campaigns/scarce.sh [ROUNDS [VLAPROBE]]: ROUNDS (20) times each, a run where something is scarce at random: file handles,
+# memory, the largest file, room on the disk, names on the disk, a disk that is read-only, a clock that jumps, a second
+# writer in the folder; and verbs that read a run with few handles and little memory. What happens may be refused, by
+# a sentence, but not by a signal and not after more than a minute; and the same command without the scarcity has to come to the rows of
+# a run that lacked nothing. What needs root or faketime is skipped where that is not there, saying so. Exit 0: nothing found.
+set -euo pipefail
+here=$(cd "$(dirname "$0")/../.." && pwd)
+rounds=${1:-20} vlaprobe=${2:-$here/build/vlaprobe}
+work=$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-scarce-XXXXXX")
+mounted=$work/disk
+stop() {
+  mountpoint -q "$mounted" && umount -l "$mounted"
+  rm -rf "$work"
+}
+trap stop EXIT
+RANDOM=24
+export VLAPROBE_CACHE=$work/cache
+"$vlaprobe" build "$here/suite/intact.probe" -o "$work/suite.plan" >/dev/null 2>&1
+asked=("$work/suite.plan" --suite intact --tasks carrot_on_plate --episodes 0-2 --policy noisy:0.01 --seeds 1 --jobs 2)
+rows() { "$vlaprobe" results "$1" --json | grep -v '"trace":'; } # FOLDER
+"$vlaprobe" run "${asked[@]}" -o "$work/calm" >"$work/log" 2>&1 || { cat "$work/log"; exit 2; }
+rows "$work/calm" >"$work/calm.rows"
+"$vlaprobe" run "${asked[@]}" --shard 1/2 -o "$work/half-1" >>"$work/log" 2>&1
+"$vlaprobe" run "${asked[@]}" --shard 2/2 -o "$work/half-2" >>"$work/log" 2>&1
+
+done=0 refused=0 found=0
+finding() { # WHAT
+  found=$((found + 1))
+  echo "FOUND: $1"
+  tail -n 4 "$work/said"
+}
+# suffers NAME COMMAND...: it may be refused by a sentence.
+suffers() {
+  local name=$1 status=0
+  shift
+  timeout -k 5 60 "$@" >"$work/said" 2>&1 || status=$?
+  done=$((done + 1))
+  [ "$status" = 0 ] && return
+  refused=$((refused + 1))
+  # The loader's own sentence, before there is a program.
+  [ "$status" = 127 ] && grep -q 'error while loading shared libraries' "$work/said" && return
+  if [ "$status" -ge 124 ]; then finding "$name ended with status $status"; return; fi
+  # A record or the disk may be what is full, the terminal is not.
+  grep -q '^vlaprobe: \|^note: \|invalid' "$work/said" || finding "$name ended with status $status and no sentence"
+}
+# recovers NAME FOLDER: without the scarcity.
+recovers() {
+  local name=$1 folder=$2
+  if ! "$vlaprobe" run "${asked[@]}" -o "$folder" >"$work/said" 2>&1; then finding "$name: the same command does not go on"; return; fi
+  rows "$folder" >"$work/rows"
+  cmp -s "$work/calm.rows" "$work/rows" || { diff "$work/calm.rows" "$work/rows" >"$work/said" || true; finding "$name: other rows than without it"; }
+  [ -z "$(find "$folder" -name '*.tmp')" ] || finding "$name: unfinished files stay"
+}
+between() { echo $(($1 + RANDOM % ($2 - $1))); } # LOW HIGH
+limited() { # NAME FLAG VALUE: a run under one limit of the shell's
+  rm -rf "$work/limited"
+  suffers "$1 $3" bash -c "ulimit -$2 $3; exec \"\$@\"" - "$vlaprobe" run "${asked[@]}" -o "$work/limited"
+  recovers "$1 $3" "$work/limited"
+}
+reading() { # NAME FLAG VALUE: verbs that read
+  local under=(bash -c "ulimit -$2 $3; exec \"\$@\"" -)
+  suffers "results, $1 $3" "${under[@]}" "$vlaprobe" results "$work/calm" --json
+  suffers "report, $1 $3" "${under[@]}" "$vlaprobe" report "$work/calm" -o "$work/page.html"
+  rm -rf "$work/merged"
+  suffers "merge, $1 $3" "${under[@]}" "$vlaprobe" merge "$work/half-1" "$work/half-2" -o "$work/merged"
+  recovers "merge, $1 $3" "$work/merged"
+  suffers "judge, $1 $3" "${under[@]}" "$vlaprobe" judge "$work/calm"
+}
+disk() { # OPTIONS: a small disk of its own
+  mountpoint -q "$mounted" && umount -l "$mounted"
+  mkdir -p "$mounted"
+  mount -t tmpfs -o "$1" vlaprobe "$mounted"
+}
+can_mount=1
+disk size=1m 2>/dev/null || { can_mount=; echo "skipped: disks that are full or read-only, which need root"; }
+command -v faketime >/dev/null || echo "skipped: clocks that jump, which need faketime"
+
+for ((round = 0; round < rounds; ++round)); do
+  few=$(between 8 60)
+  limited "handles" n "$few"
+  reading "handles" n "$few"
+  little=$(between 60000 900000) # KiB
+  limited "memory" v "$little"
+  reading "memory" v "$little"
+  limited "KiB in a file" f "$(between 1 400)"
+  if [ "$can_mount" ]; then
+    for room in "size=$(between 40 2000)k" "size=1g,nr_inodes=$(between 3 40)"; do
+      disk "$room"
+      suffers "a disk of $room" "$vlaprobe" run "${asked[@]}" -o "$mounted/run"
+      mount -o remount,size=1g,nr_inodes=100000 "$mounted"
+      recovers "a disk of $room" "$mounted/run"
+    done
+    # Begun, and gone on with where nothing can be written.
+    disk size=1g
+    "$vlaprobe" run "${asked[@]}" -o "$mounted/run" >/dev/null 2>&1 &
+    sleep "0.$(between 300 900)"
+    kill -9 $! 2>/dev/null || true
+    wait $! 2>/dev/null || true
+    mount -o remount,ro "$mounted"
+    suffers "a disk that is read-only" "$vlaprobe" run "${asked[@]}" -o "$mounted/run"
+    mount -o remount,rw "$mounted"
+    recovers "a disk that is read-only" "$mounted/run"
+  fi
+  if command -v faketime >/dev/null; then
+    rm -rf "$work/jumped"
+    echo "+0" >"$work/clock"
+    (for _ in 1 2 3 4 5 6; do sleep 0.15; echo "$((RANDOM % 2 ? 1 : -1))$(between 10 99)d" | sed 's/^1/+/; s/^-1/-/' >"$work/clock"; done) &
+    suffers "a clock that jumps" env FAKETIME_TIMESTAMP_FILE="$work/clock" FAKETIME_NO_CACHE=1 DONT_FAKE_MONOTONIC=1 \
+      LD_PRELOAD="$(ls /usr/lib/*/faketime/libfaketimeMT.so.1)" "$vlaprobe" run "${asked[@]}" -o "$work/jumped"
+    wait
+    recovers "a clock that jumps" "$work/jumped"
+  fi
+  rm -rf "$work/two"
+  "$vlaprobe" run "${asked[@]}" -o "$work/two" >"$work/other" 2>&1 &
+  sleep "0.$(between 100 600)"
+  suffers "a second writer" "$vlaprobe" run "${asked[@]}" -o "$work/two"
+  wait $! || { cp "$work/other" "$work/said"; finding "the first of two writers did not end well"; }
+  recovers "two writers" "$work/two"
+done
+echo "$done calls, $refused refused, $found findings"
+[ "$found" = 0 ]
