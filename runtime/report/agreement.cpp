@@ -199,24 +199,30 @@ namespace {
 
 struct RunRate {
   stats::Count count;
-  std::size_t starts = 0;  // episodes of one start are no independent trials
+  std::size_t starts = 0;   // episodes of one start are no independent trials
+  std::size_t planned = 0;  // starts that the suites would have run
 };
 
 // Of a policy's valid episodes in the tasks of all sets of that name, each task once.
 RunRate run_rate(const Benchmark& benchmark, int policy, std::string_view set_name) {
   const int success = benchmark.find_metric("success");
-  std::set<int> tasks;
-  for (const plan::Plan& plan : benchmark.plan_files) {
+  std::map<int, std::size_t> tasks;  // and the starts that a suite has of each
+  for (std::size_t p = 0; p < benchmark.plan_files.size(); ++p) {
+    const plan::Plan& plan = benchmark.plan_files[p];
+    const auto suite = plan.find_suite(benchmark.plans[p].suite);
     for (const plan::SetRecord& set : plan.sets()) {
       if (plan.text(set.name) != set_name) continue;
-      for (const std::uint32_t member : plan.members(set))
-        tasks.insert(benchmark.find_task(plan.text(plan.tasks()[member].name)));
+      for (const std::uint32_t member : plan.members(set)) {
+        std::size_t& starts = tasks[benchmark.find_task(plan.text(plan.tasks()[member].name))];
+        if (suite) starts = std::max(starts, plan.episodes(plan.suites()[*suite], member).size());
+      }
     }
   }
   tasks.erase(kAbsent);
   RunRate of;
   std::set<std::pair<int, int>> starts;
-  for (const int task : tasks) {
+  for (const auto& [task, planned] : tasks) {
+    of.planned += planned;
     for (const Episode& episode : benchmark.of(policy, task)) {
       if (!episode.valid()) continue;
       of.count.k += episode.is(success);
@@ -231,15 +237,26 @@ RunRate run_rate(const Benchmark& benchmark, int policy, std::string_view set_na
 }  // namespace
 
 std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) {
+  const auto is_ambiguous = [&](const std::string& name) {
+    return std::ranges::count(benchmark.policies, name, &Policy::name) > 1;
+  };
   std::vector<PublishedFigure> added;
+  std::map<std::string, std::string> partial;  // by policy
   for (const PublishedFigure& real : table.figures) {
     if (!is_rate(real) || real.protocol != kReal) continue;
     const bool is_known = std::ranges::any_of(
         added, [&](const PublishedFigure& figure) { return is_same_cell(figure, real); });
     for (std::size_t p = 0; p < benchmark.policies.size() && !is_known; ++p) {
-      if (benchmark.policies[p].name != real.policy || benchmark.policies[p].adaptive) continue;
+      if (benchmark.policies[p].name != real.policy || benchmark.policies[p].adaptive ||
+          is_ambiguous(real.policy))
+        continue;
       const RunRate of = run_rate(benchmark, static_cast<int>(p), column_of(real));
       if (of.count.n == 0) continue;
+      if (of.starts < of.planned) {
+        std::string& columns = partial[real.policy];
+        columns += fmt::format("{}{} of {} starts of `{}`", columns.empty() ? "" : ", ", of.starts,
+                               of.planned, column_of(real));
+      }
       PublishedFigure figure = real;
       figure.source = figure.protocol = kTheseRuns;
       figure.value = of.count.rate();
@@ -261,6 +278,9 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
       left_out.push_back(fmt::format(
           "`{}` has no real rate in the table, which knows {}: name runs as it does, with --name",
           policy.name, fmt::join(known, ", ")));
+    } else if (is_ambiguous(policy.name)) {
+      left_out.push_back(
+          fmt::format("`{}` is left out: another of the runs has its name", policy.label));
     } else if (!counted.contains(policy.name)) {
       left_out.push_back(
           fmt::format("`{}` has no valid episode in a set that is called as a column of the table "
@@ -268,6 +288,8 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
                       policy.name));
     }
   }
+  for (const auto& [policy, columns] : partial)
+    left_out.push_back(fmt::format("`{}` has {}: its rates are of these", policy, columns));
   if (!counted.empty() && counted.size() < kFewest) {
     left_out.push_back(fmt::format("the runs have {} of the {} policies that an agreement takes",
                                    counted.size(), kFewest));

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "runtime/base/file.h"
+#include "tests/runtime/report/fake_runs.h"
 
 namespace probe::report {
 namespace {
@@ -127,6 +128,51 @@ TEST_CASE("values that are no number, and policies with one rate of two, are lef
   for (const char* value : {"1.5", "-0.1", "1000000000"})
     CHECK(refused(kSmall + "P,real,success_rate,d,lift,average," + value + ",10\n") ==
           "t.csv:11: `" + std::string(value) + "` is no rate from 0 to 1");
+}
+
+TEST_CASE(
+    "runs stand beside real rates by name and set; a part of a set, or a name twice, is told") {
+  const plan::Plan plan = suite_plan();
+  RunsFolder folder;
+  const std::vector<std::string> dirs = {folder / "a", folder / "b", folder / "c"};
+  for (std::size_t i = 0; i < dirs.size(); ++i) {
+    fake_run(dirs[i], plan, std::string(1, static_cast<char>('a' + i)),
+             {.tasks = {"carrot_on_plate"}, .last = i == 0 ? 11 : 23}, always(i == 0));
+  }
+  const std::string real =
+      "source,protocol,metric,policy,task,subtask,value,trials\n"
+      "P,real,success_rate,a,core,,0.900,10\nP,real,success_rate,b,core,,0.500,10\n"
+      "P,real,success_rate,c,core,,0.200,10\n";
+  const auto benchmark = load(dirs);
+  REQUIRE_MESSAGE(benchmark.ok(), to_text(benchmark.failure()));
+  RateTable table = parsed(real);
+  const std::vector<std::string> said = add_runs(table, *benchmark);
+  const auto rows = agreements(table);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].protocol == kTheseRuns);
+  CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
+  REQUIRE(said.size() == 3);
+  std::size_t planned = 0;
+  for (const plan::SetRecord& set : plan.sets()) {
+    if (plan.text(set.name) != "core") continue;
+    for (const std::uint32_t task : plan.members(set))
+      planned += plan.episodes(plan.suites()[0], task).size();
+  }
+  CHECK(said[0] ==
+        "`a` has 12 of " + std::to_string(planned) + " starts of `core`: its rates are of these");
+
+  // Two folders of one name that cannot be one run.
+  fake_run(folder / "d", plan, "c", {.tasks = {"carrot_on_plate"}, .content = "other"},
+           always(true));
+  const std::vector<std::string> more = {dirs[0], dirs[1], dirs[2], folder / "d"};
+  const auto twice = load(more);
+  REQUIRE_MESSAGE(twice.ok(), to_text(twice.failure()));
+  table = parsed(real);
+  const std::vector<std::string> of_twice = add_runs(table, *twice);
+  CHECK(std::ranges::count_if(of_twice, [](const std::string& line) {
+          return line.find("is left out: another of the runs has its name") != line.npos;
+        }) == 2);
+  CHECK(agreements(table).empty());
 }
 
 TEST_CASE("Table IV of arXiv:2405.05941 is redone to 0.003, and nine of its rates are no counts") {
