@@ -61,6 +61,7 @@ class Deriver {
         record_(plan.tasks()[task]),
         roles_(plan::roles_of(plan.tables(), record_)),
         still_(make_up_world(plan, task, start)),
+        mirrored_(make_up_world(plan, task, start, Spread::kBack)),
         joints_(plan::joints_of(plan.tables(), plan.scenes()[record_.scene])) {}
 
   Result<std::vector<plan::SkillRecord>> run() {
@@ -369,19 +370,28 @@ class Deriver {
   }
 
   Result<bool> holds_with(const Arranged& bundle, bool handled) const {
-    return judge_world(plan_, task_, success_, world_of(bundle, handled));
+    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
+      PROBE_ASSIGN(const bool is_success,
+                   judge_world(plan_, task_, success_, world_of(*still, bundle, handled)));
+      if (!is_success) return false;
+    }
+    return true;
   }
 
   // Whether success holds when one is so after the other, nothing having been done before the
   // first.
   Result<bool> holds_through(std::span<const Arranged> stages) const {
-    std::vector<MadeUpWorld> worlds = {still_};
-    for (const Arranged& stage : stages) worlds.push_back(world_of(stage, false));
-    return judge_worlds(plan_, task_, success_, std::move(worlds));
+    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
+      std::vector<MadeUpWorld> worlds = {*still};
+      for (const Arranged& stage : stages) worlds.push_back(world_of(*still, stage, false));
+      PROBE_ASSIGN(const bool is_success, judge_worlds(plan_, task_, success_, std::move(worlds)));
+      if (!is_success) return false;
+    }
+    return true;
   }
 
-  MadeUpWorld world_of(const Arranged& bundle, bool handled) const {
-    MadeUpWorld world = still_;
+  MadeUpWorld world_of(const MadeUpWorld& still, const Arranged& bundle, bool handled) const {
+    MadeUpWorld world = still;
     double along = 0;
     for (const auto& [object, place] : bundle.objects)
       put_at(plan_, record_, object, place, along++, &world);
@@ -482,7 +492,7 @@ class Deriver {
   const std::uint32_t task_, success_;
   const plan::TaskRecord& record_;
   const plan::TaskRoles roles_;
-  const MadeUpWorld still_;
+  const MadeUpWorld still_, mirrored_;
   const std::vector<const plan::FixtureJointRecord*> joints_;
   std::vector<JointMove> moves_;
   std::vector<PutPlace> places_;

@@ -75,7 +75,8 @@ PlacedObject placed_object(std::uint16_t body, const plan::ObjectRecord& object,
 
 }  // namespace
 
-MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start) {
+MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
+                          Spread spread) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const double table = plan.scenes()[record.scene].surface_z;
   const plan::RobotRecord& robot = plan.robots()[plan.scenes()[record.scene].robot];
@@ -84,6 +85,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
   const auto episodes = plan.episodes(record);
   const plan::TaskRoles roles = plan::roles_of(plan.tables(), record);
   MadeUpWorld world;
+  world.spread = spread;
   if (roles.has_source()) world.source = static_cast<std::uint16_t>(roles.source);
   if (roles.has_target()) world.target = static_cast<std::uint16_t>(roles.target);
   world.starts.resize(bodies.size());
@@ -108,7 +110,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
       const plan::ObjectRecord& object = plan.objects()[bodies[i].index];
       world.starts[i].half = half_extents(object, rotation);
       world.middles[i] = middle_of(object, rotation);
-      at = {kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()};
+      at = world.mirrored({kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()});
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};
       if (bodies[i].index < fingers) world.fingers.push_back(static_cast<std::uint16_t>(i));
@@ -116,7 +118,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
       world.fixture = static_cast<std::uint16_t>(i);
     } else if (kind == plan::BodyKind::kPart) {
       // Apart, as regions of two parts may be one box in the parts' own frames.
-      at = {0, -kFar * static_cast<double>(i), table + kFar};
+      at = world.mirrored({0, -kFar * static_cast<double>(i), table + kFar});
     }
     world.starts[i].position = at;
     world.put(i, at);

@@ -15,9 +15,14 @@ namespace probe::vm {
 // N s: what a light object at rest presses in a substep.
 inline constexpr double kMadeUpContact = 0.01;
 
+// Along +x and -y, or the other way: what is true in the one and not in the other is true because
+// of where things were made up to be, as "left of" is, and says nothing of a real world.
+enum class Spread : std::uint8_t { kAlong, kBack };
+
 // The task's bodies as a start turns them and joints of fixtures as it has them, half a metre from
 // one another and from the arm, parts of fixtures as well as objects; nothing touches.
 struct MadeUpWorld {
+  Spread spread = Spread::kAlong;
   std::vector<BodyStart> starts;
   StepSample sample;
   std::uint16_t source = 0, target = 0;    // of tasks that have them
@@ -25,6 +30,10 @@ struct MadeUpWorld {
   std::vector<std::uint16_t> fingers;      // each opens along +y
   std::vector<Vec3> middles;  // of the objects' boxes, from the model's origin; of others 0
 
+  // A step in the plane, mirrored where the world is.
+  Vec3 mirrored(const Vec3& by) const {
+    return spread == Spread::kAlong ? by : Vec3(-by.x(), -by.y(), by.z());
+  }
   // `at`: the middle of its box. Its model's origin, which regions of its own count from, lies
   // where the model has it, as long as the object stands upright.
   void put(std::size_t body, const Vec3& at) {
@@ -44,7 +53,8 @@ struct MadeUpWorld {
 };
 
 // `start`: of the task's episodes, which may be none.
-MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start = 0);
+MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start = 0,
+                          Spread spread = Spread::kAlong);
 
 // What a start gives to its made-up world: starts of which it is the same have the same goal, and
 // the same skills make success. `joint_step` (m, rad): what joints are rounded to; 0: not at all.

@@ -37,7 +37,7 @@ void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t 
     const Vec3& to = world->sample.bodies[below].position;
     if (place.relation == plan::SkillRelation::kBeside) {
       const double apart = half.head<2>().norm() + half_below.head<2>().norm() + kBeside;
-      at = Vec3(to.x(), to.y() + apart, to.z() - half_below.z() + half.z());
+      at = to + world->mirrored({0, apart, half.z() - half_below.z()});
       below = world->surface;
     } else {
       // In a hollow thing it lies on the floor.

@@ -13,22 +13,32 @@ namespace {
 constexpr double kHeldAside = 0.2;    // m: far from the target
 constexpr double kHeldLifted = 0.12;  // m above where it stood
 
+constexpr Spread kSpreads[] = {Spread::kAlong, Spread::kBack};
+
 Result<bool> holds_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
                         std::uint32_t start, const Vec3& by) {
-  MadeUpWorld world = make_up_world(plan, task, start);
-  world.put(world.source, world.sample.bodies[world.source].position + by);
-  world.hold_source();
-  return judge_world(plan, task, success, std::move(world));
+  for (const Spread spread : kSpreads) {
+    MadeUpWorld world = make_up_world(plan, task, start, spread);
+    world.put(world.source, world.sample.bodies[world.source].position + world.mirrored(by));
+    world.hold_source();
+    PROBE_ASSIGN(const bool holds, judge_world(plan, task, success, std::move(world)));
+    if (!holds) return false;
+  }
+  return true;
 }
 
 Result<bool> lies_on_target(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
                             std::uint32_t start) {
-  MadeUpWorld world = make_up_world(plan, task, start);
-  const double above = world.starts[world.source].half.z() + world.starts[world.target].half.z();
-  world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
-  world.press_down(world.source, world.target);
-  world.press_down(world.target, world.surface);
-  return judge_world(plan, task, success, std::move(world));
+  for (const Spread spread : kSpreads) {
+    MadeUpWorld world = make_up_world(plan, task, start, spread);
+    const double above = world.starts[world.source].half.z() + world.starts[world.target].half.z();
+    world.put(world.source, world.sample.bodies[world.target].position + Vec3(0, 0, above));
+    world.press_down(world.source, world.target);
+    world.press_down(world.target, world.surface);
+    PROBE_ASSIGN(const bool holds, judge_world(plan, task, success, std::move(world)));
+    if (!holds) return false;
+  }
+  return true;
 }
 
 // Whether success is so as this start begins, and not as another kind of start does.

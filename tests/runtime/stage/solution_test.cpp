@@ -13,6 +13,7 @@
 #include "runtime/plan/skills.h"
 #include "runtime/stage/stage.h"
 #include "runtime/vm/derived_solution.h"
+#include "runtime/vm/source_goal.h"
 #include "tests/runtime/stage/solves.h"
 
 namespace probe::stage {
@@ -173,6 +174,23 @@ task far like carrot_on_plate { scene far_widowx; metrics far_open; say "open th
         "hold is thinner");
   CHECK(refusal("far").starts_with(
       "skill 1 `open far_chest.drawer`: it is out of the arm's reach ("));
+}
+
+TEST_CASE("what is left or right of something only where things were made up to be is no solution") {
+  const plan::Plan plan = kitchen_of(R"(
+use "std/space.probe"
+use "std/place.probe"
+metrics left { success = at end (left_of(source, target) and let_go(source) and displaced(source)) }
+metrics right { success = at end (right_of(source, target) and let_go(source) and displaced(source)) }
+task to_left like kept { scene drawers; metrics left; say "move {the source} to the left of {the target}" }
+task to_right like to_left { metrics right; say "move {the source} to the right of {the target}" }
+)");
+  for (const char* const name : {"to_left", "to_right"}) {
+    CAPTURE(name);
+    const auto has = vm::has_skills(plan, *plan.find_task(name));
+    REQUIRE(has.ok());
+    CHECK_FALSE(*has);
+  }
 }
 
 TEST_CASE("where nothing makes success, a thing that has a region of its own is not put into it") {
