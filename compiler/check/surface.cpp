@@ -1,10 +1,13 @@
-// P0505 as an error: an object over the edge of the surface.
+// P0505 as an error: an object over the edge of the surface, and one that a table of starts has far
+// below or above it.
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "compiler/check/starts.h"
 #include "compiler/define/support.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/pose.h"
 
 namespace probe::sema {
 
@@ -18,7 +21,43 @@ bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed) {
   return !is_inside(footprint(starts.object(placed), placed), area);
 }
 
+namespace {
+
+// What is stored in a table top is pushed out of it, as recorded starts are; not from as deep as
+// this. What falls from higher has not come to rest when the settling time ends.
+constexpr double kDeepest = 0.1;  // m
+constexpr double kHighest = 2.0;  // m
+
+// Where there are fixtures things may stand on what is lower or higher than the surface.
+bool check_heights(const TaskStarts& starts) {
+  const Scene& scene = starts.model.scenes[starts.task.scene];
+  if (scene.fixture || !scene.fixtures.empty()) return true;
+  for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
+    for (const Start::Placed& placed : starts.task.starts[e].placed) {
+      if (!placed.z) continue;
+      const Object& object = starts.object(placed);
+      const double above = *placed.z + lowest(object, axes_of(placed.turn)) - scene.surface_z;
+      const bool is_below = above < -kDeepest;
+      if (!is_below && above <= kHighest) continue;
+      starts.reporter
+          .report(Situation::kOverEdge, starts.place({placed.object}),
+                  "`" + object.name + "` begins " + centimetres(std::abs(above)) +
+                      (is_below ? " below" : " above") + " the surface of `" + scene.name +
+                      "` in start " + std::to_string(e) + " of `" + starts.task.name + "`")
+          .label(starts.layout.span, "the layout")
+          .label(scene.span, "the surface is at " + centimetres(scene.surface_z))
+          .help("`z_m` is the height of its model's origin above the floor, in metres")
+          .cause = cause_of(starts.layout.span, {scene.name, object.name});
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 bool check_surface(const TaskStarts& starts) {
+  if (!check_heights(starts)) return false;
   const Scene& scene = starts.model.scenes[starts.task.scene];
   // What is put into a fixture or onto another object stands on that.
   const std::vector<Put> puts = puts_of(starts.model, starts.task);

@@ -120,6 +120,17 @@ TEST_CASE("what a table names by name is in the scene of its tasks") {
   CHECK(plan.placements(plan.episodes()[0]).size() == 3);
 }
 
+TEST_CASE("what a table has deep in the table top or far above it is told with how far") {
+  const auto with = [](const std::string& z) {
+    return said("start,object,x_m,y_m,z_m\n0,source,-0.16,-0.1," + z + "\n0,target,-0.16,0.1,0.9\n",
+                kTask);
+  };
+  CHECK(with("0.4").find("below the surface of") != std::string::npos);
+  CHECK(with("3.5").find("above the surface of") != std::string::npos);
+  CHECK(with("0.86").find("P0505") == std::string::npos);
+  CHECK(with("1.4").find("P0505") == std::string::npos);
+}
+
 TEST_CASE("heights keep things apart that stand over one another") {
   const std::string over = "start,object,x_m,y_m,z_m\n0,source,-0.16,0,1.1\n0,target,-0.16,0,0.9\n";
   const std::string within =
