@@ -214,13 +214,20 @@ class Expert final : public policy::Policy {
     if (options_.source > 1) return tidied(view, wrong_skills(view, options_.source));
     std::vector<policy::Skill> skills = view.solution;
     // What only reaches goes to the first thing that is done something with.
-    if (!options_.close && !skills.empty()) skills.resize(1);
+    if (!options_.close && !skills.empty()) {
+      const auto is_left = [&](const policy::Skill& skill) {
+        return skill.fixture < 0 ||
+               !JointSkill::is_done(skill,
+                                    *view.fixtures[static_cast<std::size_t>(skill.fixture)].joint);
+      };
+      const auto first = std::ranges::find_if(skills, is_left);
+      skills = {first == skills.end() ? skills.front() : *first};
+    }
     if (options_.close && options_.source == 0) skills = opened_first(view, std::move(skills));
     return tidied(view, std::move(skills));
   }
   bool may_rest(const policy::Observation& observation) const {
-    return options_.close && options_.source == 0 && solution_.empty() &&
-           observation.privileged != nullptr &&
+    return options_.source == 0 && solution_.empty() && observation.privileged != nullptr &&
            observation.privileged->goal == policy::Goal::kNothing;
   }
   // The skill that is being done.

@@ -23,6 +23,12 @@ class JointSkill {
   std::optional<policy::Action> act(const policy::Privileged& view, const Arm& arm, Servo& servo,
                                     const Reach& reach);
 
+  // Whether a part stands as the skill leaves it, so that there is nothing to do.
+  static bool is_done(const policy::Skill& skill, const PartJoint& joint) {
+    const Goal goal = goal_of(skill, joint);
+    return goal.met(joint.position, goal.enough);
+  }
+
   // Whether the joint is where it shall be; after act() gave nothing.
   bool reached() const { return reached_; }
   // Why it is not, then.

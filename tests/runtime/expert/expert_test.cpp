@@ -102,6 +102,45 @@ TEST_CASE("the one that only reaches stands at the source with open fingers") {
   CHECK(table.openness() > 0.95);
 }
 
+TEST_CASE("the one that only reaches goes to the first thing that is not as it shall be") {
+  policy::PrivilegedFixture drawer;
+  drawer.name = "drawer";
+  drawer.parts = {test::block({-0.1, -0.1, 0}, {0.1, 0.1, 0.05})};
+  drawer.pose.position = {-0.30, 0.30, test::kSurface};
+  drawer.joint.emplace();
+  drawer.joint->slides = true;
+  drawer.joint->upper = drawer.joint->position = 0.1;
+  policy::Skill open, put;
+  open.kind = policy::Skill::Kind::kOpen;
+  open.fixture = 0;
+  put.kind = policy::Skill::Kind::kPut;
+  put.object = 0;
+  put.to_object = 1;
+  test::FakeTable table(test::carrot(-0.235, -0.075, 180), test::plate(-0.085, 0.075));
+  table.view().fixtures = {drawer};
+  table.view().solution = {open, put};
+  const auto policy = expert({.source = 0, .target = -1, .close = false});
+  CHECK(play(table, *policy) == -1);
+  CHECK((table.tcp_in_world().position - table.source().pose.position).norm() < 0.05);
+  // Nowhere, when all is.
+  test::FakeTable done(test::carrot(-0.235, -0.075, 180), test::plate(-0.085, 0.075));
+  done.view().fixtures = {drawer};
+  done.view().solution = {open};
+  const Vec3 before = done.tcp_in_world().position;
+  CHECK(play(done, *policy) == -1);
+  CHECK((done.tcp_in_world().position - before).norm() < 0.01);
+}
+
+TEST_CASE("where nothing is left to do the one that only reaches stays where it is, too") {
+  test::FakeTable table(test::carrot(-0.235, -0.075, 180), test::plate(-0.085, 0.075));
+  table.set_goal(policy::Goal::kNothing);
+  table.view().source = -1;
+  const Vec3 before = table.tcp_in_world().position;
+  const auto policy = expert({.source = 0, .target = -1, .close = false});
+  CHECK(play(table, *policy) == -1);
+  CHECK((table.tcp_in_world().position - before).norm() < 0.01);
+}
+
 TEST_CASE("the roles can be others, as for taking a distractor") {
   const auto cube = test::object("cube", {test::block({-0.015, -0.015, 0}, {0.015, 0.015, 0.03})},
                                  {-0.235, 0.075, test::kSurface}, 0);

@@ -102,6 +102,7 @@ class FakeTable {
   void lose_next_grasp() { slips_ = true; }
 
   void set_goal(policy::Goal goal) { view_.goal = goal; }
+  policy::Privileged& view() { return view_; }
 
   policy::PrivilegedObject& source() { return view_.objects[0]; }
   policy::PrivilegedObject& target() { return view_.objects[1]; }
