@@ -324,6 +324,7 @@ class Auditor {
                                "last one"};
     constexpr Rule kBegun = {Kind::kHoldsAtStart, "success",
                              "`success` is true before anything has moved: things begin so"};
+    FixtureStarts fixtures(compilation_, plan_);
     for (const std::uint32_t index : scope_) {
       const plan::TaskRecord& task = plan_.tasks()[index];
       const auto metrics = plan_.metrics(task);
@@ -358,7 +359,7 @@ class Auditor {
         PROBE_ASSIGN(const BrokenIn in_the_air, passes_in_the_air(plan_, index, *success));
         if (in_the_air) add_rule(kAir, index, *in_the_air);
         if (at_end && counts_an_earlier_touch(plan_, index, *success)) add_rule(kTouched, index);
-        PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success));
+        PROBE_ASSIGN(const bool begun, holds_at_start(plan_, index, *success, fixtures));
         if (begun) add_rule(kBegun, index);
         PROBE_TRY(find_swapped_order(index));
         PROBE_ASSIGN(std::string flaw, vm::flaw_of_solution(plan_, index));

@@ -262,7 +262,8 @@ Result<SeveralPut> passes_of_several(const plan::Plan& plan, std::uint32_t task,
   return found;
 }
 
-Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success) {
+Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
+                            FixtureStarts& fixtures) {
   const auto code = plan.code(plan.programs()[plan.tasks()[task].program]);
   const bool reads_joints = std::ranges::any_of(code, [](const plan::Instruction& in) {
     const auto op = static_cast<plan::Op>(in.op);
@@ -277,8 +278,9 @@ Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uin
   }
   const auto starts = static_cast<std::uint32_t>(plan.episodes(plan.tasks()[task]).size());
   for (std::uint32_t start = 0; start < starts; ++start) {
+    const std::vector<vm::BegunIn> in = fixtures.of(task, start);
     for (const vm::Lies lies : {vm::Lies::kOn, vm::Lies::kIn}) {
-      auto begun = vm::make_up_start(plan, task, start, lies);
+      auto begun = vm::make_up_start(plan, task, start, lies, in);
       if (!begun) break;
       // What an episode would be invalid for is no way to begin: on a plate is not in it.
       PROBE_ASSIGN(const auto claims, vm::judge_claims(plan, task, begun->starts, begun->sample));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "compiler/audit/stage.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 
@@ -37,7 +38,8 @@ Result<BrokenIn> passes_held(const plan::Plan& plan, std::uint32_t task, std::ui
 // Whether metric `success` is true where nothing has moved: of a world in which objects lie far
 // apart, of a task that measures joints of fixtures (a drawer that is to be opened begins open in
 // some start); or of what a layout puts on another thing or into a region.
-Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success);
+Result<bool> holds_at_start(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
+                            FixtureStarts& fixtures);
 
 // The same two questions of tasks that put several things somewhere, asked of each of these while
 // the others are where they belong, put there in their order.

@@ -50,7 +50,8 @@ struct PlacedObject {
   std::uint16_t body = 0;
   Vec3 centre, half;  // of its box along the world's axes
   Quat rotation;
-  double rest = 0;  // m: of the centre, when it lies
+  double rest = 0;            // m: of the centre, when it lies
+  Vec3 shift = Vec3::Zero();  // m: from where it is placed to where it is made up
 
   double bottom() const { return centre.z() - half.z(); }
   // Whether a layout puts `above` on this: it begins a millimetre over it.
@@ -162,7 +163,8 @@ std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t
 }
 
 std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,
-                                         std::uint32_t start, Lies lies) {
+                                         std::uint32_t start, Lies lies,
+                                         std::span<const BegunIn> in) {
   const plan::TaskRecord& record = plan.tasks()[task];
   const auto bodies = plan.bodies(record);
   const auto placements = plan.placements(plan.episodes(record)[start]);
@@ -185,15 +187,24 @@ std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t t
       if (&other == &one) break;
       if (other.carries(one)) carrier = &other;
     }
-    const std::uint16_t below = carrier == nullptr ? world.surface : carrier->body;
-    double floor = table;
-    if (carrier != nullptr)
-      floor = lies == Lies::kOn ? carrier->rest + carrier->half.z()
-                                : carrier->rest - carrier->half.z() + kFloor;
-    one.rest = floor + one.half.z();
-    carried = carried || carrier != nullptr;
+    const auto begun = std::ranges::find(in, one.body, &BegunIn::object);
+    std::uint16_t below = world.surface;
     Vec3 at = one.centre;
-    at.z() = one.rest;
+    if (carrier != nullptr) {
+      below = carrier->body;
+      one.shift = carrier->shift;
+      at += one.shift;
+      at.z() = one.half.z() + (lies == Lies::kOn ? carrier->rest + carrier->half.z()
+                                                 : carrier->rest - carrier->half.z() + kFloor);
+    } else if (begun != in.end()) {
+      below = begun->owner;
+      at = world.sample.bodies[below].origin + begun->at;
+      one.shift = at - one.centre;
+    } else {
+      at.z() = table + one.half.z();
+    }
+    one.rest = at.z();
+    carried = carried || below != world.surface;
     const plan::ObjectRecord& object = plan.objects()[bodies[one.body].index];
     world.sample.bodies[one.body].rotation = one.rotation;
     world.middles[one.body] =

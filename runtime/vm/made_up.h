@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -68,11 +69,20 @@ std::vector<std::uint32_t> kinds_of_starts(const plan::Plan& plan, std::uint32_t
 // or just above the other's lower side, as in a hollow thing.
 enum class Lies : std::uint8_t { kOn, kIn };
 
+// An object that begins in a fixture, or in a part of one: the middle of its box in that body's
+// frame.
+struct BegunIn {
+  std::uint16_t object = 0, owner = 0;  // bodies of the task
+  Vec3 at;
+};
+
 // The task's objects where a start places them, at rest: on one another where the layout puts them
-// so, the others on the surface; everything presses what carries it. None when no object is put on
-// another. Fixtures and their parts are as in make_up_world, so nothing is in a region of theirs.
+// so, in fixtures where `in` says so, the others on the surface; everything presses what carries
+// it. None when no object is put on another or in a fixture. Fixtures and their parts are as in
+// make_up_world, and what is in one is where that is.
 std::optional<MadeUpWorld> make_up_start(const plan::Plan& plan, std::uint32_t task,
-                                         std::uint32_t start, Lies lies);
+                                         std::uint32_t start, Lies lies,
+                                         std::span<const BegunIn> in = {});
 
 // What a condition among the task's metrics says when the world has stayed as it is for 8 control
 // steps, more than any rule counts.

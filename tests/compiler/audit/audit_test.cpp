@@ -347,6 +347,28 @@ TEST_CASE("a thing that begins on another while a drawer is shut, in one start a
   CHECK(!holds("0", "0.13"));
 }
 
+TEST_CASE("a thing that begins in the drawer that it shall be put into is found") {
+  const auto with = [](const std::string& place, const std::string& top) {
+    return audit_text(
+               "use \"kitchen.probe\"\n"
+               "layout here { cells c = grid 2 x 2 at (-18cm, -9cm) spread (7.5cm, 7.5cm)\n"
+               "  place carrot in distinct c; place source " +
+               place +
+               "\n  drop 10cm settle 0.5s }\n"
+               "metrics storing { success = at end lies_in(source, target) }\n"
+               "task store_it like in_kitchen { source green_cube; target cabinet.inside_top\n"
+               "  layout here; metrics storing; start cabinet.top " +
+               top +
+               "\n  say \"put {the source} in {the target}\" }\n"
+               "suite own { tasks { store_it }; seeds 0 }\n")
+               .find(Kind::kHoldsAtStart, "store_it") != nullptr;
+  };
+  CHECK(with("in cabinet.inside_top", "12cm"));
+  CHECK(with("in cabinet.inside_top", "0cm"));
+  CHECK(!with("in distinct c", "12cm"));
+  CHECK(!with("on carrot", "12cm"));
+}
+
 TEST_CASE("a rule that passes too much in another start than the first is found, with that start") {
   // The middle of a can that stands beside the plate is 2.8 cm above that of the plate, of one that
   // lies 1.4 cm.
