@@ -303,13 +303,16 @@ void check_mesh_count(Context& context, const Robot& robot) {
                      " meshes in a robot description, found " + std::to_string(files.size()));
 }
 
-// Drives of a copied hand, of which a robot that has none may keep the joints, fixed, or not.
-void drop_copied_hand(const Span& own, std::vector<WrittenDrive>& drives, const Robot& robot) {
+// Copied drives of joints that a description of its own lacks or fixes: of another hand, or of one
+// that it does not have.
+void drop_copied_drives(const Span& own, std::vector<WrittenDrive>& drives, Robot& robot) {
   std::erase_if(drives, [&](const WrittenDrive& drive) {
     if (is_within(drive.joint.span, own)) return false;
     const int joint = robot.model->find_joint(drive.joint.text);
-    return joint < 0 ||
-           robot.model->joints[static_cast<std::size_t>(joint)].kind == robot::JointKind::kFixed;
+    const bool is_gone = joint < 0 || robot.model->joints[static_cast<std::size_t>(joint)].kind ==
+                                          robot::JointKind::kFixed;
+    if (is_gone) robot.left_drives.push_back(drive.joint);
+    return is_gone;
   });
 }
 
@@ -318,7 +321,7 @@ void load_model(Context& context, const Span& own, std::vector<WrittenDrive>& dr
                 Robot& robot) {
   robot.model = described_by(context, robot.urdf, "the robot description");
   if (!robot.model) return;
-  if (robot.fingers.empty()) drop_copied_hand(own, drives, robot);
+  if (robot.like != RobotId::kNone) drop_copied_drives(own, drives, robot);
   check_mesh_count(context, robot);
   check_link(context, robot.tcp, robot);
   for (const Finger& finger : robot.fingers) check_link(context, finger.link, robot);

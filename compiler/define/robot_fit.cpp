@@ -79,13 +79,15 @@ class Fit {
       if (joint.mimic >= 0 &&
           has(driven_, model_.joints[static_cast<std::size_t>(joint.mimic)].name))
         continue;
-      context_
-          .report(Situation::kUndriven, robot_.span,
-                  fmt::format("joint `{}` of `{}` moves, but no `drive` says how", joint.name,
-                              robot_.name))
-          .label(robot_.urdf.span, "described here")
+      Diagnostic& said =
+          context_.report(Situation::kUndriven, robot_.span,
+                          fmt::format("joint `{}` of `{}` moves, but no `drive` says how",
+                                      joint.name, robot_.name));
+      said.label(robot_.urdf.span, "described here")
           .help(fmt::format("write `drive {} ...`, or make it `fixed` in the description",
                             joint.name));
+      for (const Spelled& left : robot_.left_drives)
+        said.label(left.span, fmt::format("`{}` is no joint that moves there", left.text));
       return false;
     }
     return true;

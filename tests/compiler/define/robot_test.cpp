@@ -113,6 +113,31 @@ TEST_CASE("a copy without fingers has no grip either, unless it says one") {
   CHECK_MESSAGE(gripping->codes() == "P1003", gripping->said());
 }
 
+TEST_CASE("a copy with another hand has the drives of its own joints alone, and says them") {
+  const std::string root = probe::test::asset_root();
+  std::string text = probe::test::arm_urdf();
+  for (const char* finger : {"l", "r"}) {
+    const std::string name = "<joint name=\"" + std::string(finger) + "\"";
+    text.replace(text.find(name), name.size(), "<joint name=\"jaw_" + std::string(finger) + "\"");
+  }
+  probe::test::write_text(std::filesystem::path(root) / "arm/jaws.urdf", text);
+  const std::string urdf = "robot odd like arm { urdf \"arm/jaws.urdf\"";
+  const std::string gains = " stiffness 1000N/m damping 300Ns/m limit 70N }";
+  const auto whole = analyze_with_suite(urdf + "; drive jaw_l, jaw_r" + gains);
+  CHECK_MESSAGE(whole->codes() == "", whole->said());
+  // Unsaid: the joint is named, and what was copied in vain.
+  const auto unsaid = analyze_with_suite(urdf + " }");
+  CHECK_MESSAGE(unsaid->codes() == "P1004", unsaid->said());
+  CHECK_MESSAGE(unsaid->said().find("joint `jaw_l` of `odd` moves, but no `drive` says how") !=
+                    std::string::npos,
+                unsaid->said());
+  CHECK(unsaid->said().find("`l` is no joint that moves there") != std::string::npos);
+  // Misspelt: that alone is said.
+  const auto misspelt = analyze_with_suite(urdf + "; drive jaww_l, jaw_r" + gains);
+  CHECK_MESSAGE(misspelt->codes() == "P0201", misspelt->said());
+  CHECK(misspelt->said().find("did you mean `jaw_l`?") != std::string::npos);
+}
+
 TEST_CASE("a copy of a robot is told where what it copied does not fit") {
   // The tool is the copied robot's, of a description that this one has not.
   const auto other = analyze_with_suite("robot odd like arm { urdf \"chest/chest.urdf\" }");
