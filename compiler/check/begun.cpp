@@ -1,7 +1,7 @@
-// P0607: success that is true before anything has moved, in starts of a task, what is asked "was it
-// ever so" and is so in all of them, and what brings the second sentence and is so in some. A
-// policy that does nothing has them. What is not known before things settle, as whether one lies on
-// another, says nothing here.
+// P0607: success that is true before anything has moved, in starts of a task, what ends an episode
+// and is, what is asked "was it ever so" and is so in all of them, and what brings the second
+// sentence and is so in some. A policy that does nothing has them. What is not known before things
+// settle, as whether one lies on another, says nothing here.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -15,6 +15,7 @@
 #include "compiler/geometry/centre.h"
 #include "compiler/geometry/footprint.h"
 #include "compiler/lower/lower.h"
+#include "runtime/plan/readouts.h"
 
 namespace probe::sema {
 namespace {
@@ -30,20 +31,19 @@ class BegunChecker {
 
   void check(const Task& task) {
     check_later(task);
-    if (task.starts.empty() || !task.motions.empty() || model_.layouts[task.layout].begins_placed)
-      return;
-    // What is measured of bodies that are not apart is not known.
-    const auto is_put = [](const Start::Placed& placed) { return placed.z.has_value(); };
-    if (std::any_of(task.starts.front().placed.begin(), task.starts.front().placed.end(), is_put))
-      return;
+    if (task.starts.empty()) return;
     const std::vector<lower::Body> bodies = lower::bodies_of(model_, task);
+    const Metric* ends = nullptr;
+    bool is_begun = false;
     for (const Metric& metric : task.judged) {
       const bool is_success = metric.name == "success";
-      if (metric.type.kind != TypeKind::kBool ||
+      if (metric.name == plan::kEndsMetric) ends = &metric;
+      if (metric.type.kind != TypeKind::kBool || &metric == ends ||
           (!is_success && metric.readout != plan::Readout::kOnce))
         continue;
-      check(task, metric, is_success, bodies);
+      is_begun = check(task, metric, is_success, bodies) || is_begun;
     }
+    if (ends != nullptr && !is_begun) check(task, *ends, true, bodies);
   }
 
  private:
@@ -92,23 +92,33 @@ class BegunChecker {
     return text + (begun.size() > kMostNamed ? " .." : "");
   }
 
-  void check(const Task& task, const Metric& metric, bool is_success,
+  // Places are known of what falls from a layout's height and stays there: not of what moves by
+  // itself, of what an episode begins with in the air, nor of what stands on something.
+  bool are_places_known(const Task& task) const {
+    const auto is_put = [](const Start::Placed& placed) { return placed.z.has_value(); };
+    return task.motions.empty() && !model_.layouts[task.layout].begins_placed &&
+           std::ranges::none_of(task.starts.front().placed, is_put);
+  }
+
+  // Whether it is success that was found to be so.
+  bool check(const Task& task, const Metric& metric, bool is_success,
              const std::vector<lower::Body>& bodies) {
     const lower::Program* program = program_of(task, metric, bodies);
-    if (program == nullptr) return;
+    if (program == nullptr) return false;
     std::vector<std::size_t> begun;
     for (std::size_t i = 0; i < task.starts.size(); ++i) {
       if (holds(*program, task, bodies, task.starts[i])) {
         begun.push_back(i);
       } else if (!is_success) {
-        return;  // it tells the one start from the other
+        return false;  // it tells the one start from the other
       }
     }
-    if (begun.empty()) return;
+    if (begun.empty()) return false;
     // What has to be so all along begins so.
-    if (begun.size() == task.starts.size() && metric.readout == plan::Readout::kAlways) return;
-    if (!said_.insert({metric.span, task.starts.data()}).second) return;
-    report(task, metric, begun);
+    if (begun.size() == task.starts.size() && metric.readout == plan::Readout::kAlways)
+      return false;
+    if (said_.insert({metric.span, task.starts.data()}).second) report(task, metric, begun);
+    return is_success;
   }
 
   // A metric as a program, made once for tasks of one shape; null where it is false wherever things
@@ -143,6 +153,10 @@ class BegunChecker {
 
   bool holds(const lower::Program& program, const Task& task,
              const std::vector<lower::Body>& bodies, const Start& start) {
+    if (!are_places_known(task)) {
+      const auto touch = [](auto, auto) { return std::optional<bool>(); };
+      return lower::holds_at_rest(program, 0, {{}, joints_at(task, start), touch}) == true;
+    }
     const Scene& scene = model_.scenes[task.scene];
     std::vector<Footprint> prints;
     for (const Start::Placed& placed : start.placed)
@@ -172,15 +186,25 @@ class BegunChecker {
 
   void report(const Task& task, const Metric& metric, const std::vector<std::size_t>& begun) {
     const About about(reporter_, task.decl_span);
+    const bool ends = metric.name == plan::kEndsMetric;
+    const char* help =
+        "it says nothing of a policy: begin otherwise, or ask for what has to change";
+    if (ends) {
+      help =
+          "episodes are over after their first step there: begin otherwise, or ask for what has "
+          "to change";
+    } else if (metric.name == "success" && task.source == ObjectId::kNone) {
+      help = "begin otherwise: a joint has its `start` in the task, its layout or its fixture";
+    } else if (metric.name == "success") {
+      help =
+          "place things so that none begins so, or ask for what has to move as well: `.. and "
+          "displaced(source)`";
+    }
     report_of(reporter_, Code::P0607, task, task.span,
-              "`" + metric.name + "` of `" + task.name + "` is true before anything moves in " +
-                  in_words(begun, task.starts.size()))
+              "`" + std::string(ends ? "ends when" : metric.name) + "` of `" + task.name +
+                  "` is true before anything moves in " + in_words(begun, task.starts.size()))
         .label(metric.span, "judged by this")
-        .help(metric.name == "success"
-                  ? "place things so that none begins so, or ask for what has to move as well: `.. "
-                    "and "
-                    "displaced(source)`"
-                  : "it says nothing of a policy: begin otherwise, or ask for what has to change");
+        .help(help);
   }
 
   const Model& model_;

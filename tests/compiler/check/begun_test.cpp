@@ -55,6 +55,44 @@ TEST_CASE("a joint that begins where it shall be counts as well") {
             .find(kSome) == 0);
 }
 
+TEST_CASE("where places are not known joints are, and what they decide alone is told") {
+  const std::string joints = "travel(chest.slide) > 3cm";
+  for (const char* more :
+       {"; scene room; layout placed", "; scene room; moves source along (2cm, 0cm) at 5cm/s"}) {
+    CAPTURE(more);
+    const auto of = [&](const std::string& success) {
+      return test::analyze_with_suite(
+                 std::string(test::kChest) +
+                 "layout placed { place source at (-10cm, -10cm); place target at (-10cm, 10cm)\n"
+                 "orient by rest; drop none }\nmetrics m { success = at end " +
+                 success +
+                 " }\ntask t like red_on_tray { metrics m; say \"use {the source} and {the "
+                 "target}\" " +
+                 more + " }\n")
+          ->said();
+    };
+    CHECK_MESSAGE(of(joints).find(kSome) == 0, of(joints));
+    CHECK(of("travel(chest.slide) > 10cm").find(kSome) == std::string::npos);
+    CHECK(of("(x(source) < x(target) + 1m)").find(kSome) == std::string::npos);
+  }
+}
+
+TEST_CASE("what ends an episode and is so before anything moves is told, unless it is success") {
+  const auto said = [](const std::string& success, const std::string& ends) {
+    return test::analyze_with_suite(std::string(test::kChest) + "metrics m { success = at end " +
+                                    success + "; ends when " + ends +
+                                    " }\ntask t like red_on_tray { metrics m; scene room; say "
+                                    "\"use {the source} and {the target}\" }\n")
+        ->said();
+  };
+  const std::string begun = "travel(chest.slide) > 3cm", later = "travel(chest.slide) > 10cm";
+  CHECK(said(later, begun).find("`ends when` of `t` is true before anything moves in all of its") !=
+        std::string::npos);
+  CHECK(said(begun, begun).find("`ends when` of `t` is true") == std::string::npos);
+  CHECK(said(begun, begun).find(kSome) == 0);
+  CHECK(said(later, later).find("before anything moves") == std::string::npos);
+}
+
 TEST_CASE("success that holds in all starts is told as well, but for what has to hold throughout") {
   CHECK(begun_of("moved_xy(source) < 1cm") == std::string(kSome) + "all of its 24 starts");
   CHECK(begun_of("(x(source) < x(target) + 90cm and moved_xy(source) <= 1cm)") ==
