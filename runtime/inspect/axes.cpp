@@ -22,7 +22,6 @@ ByRole objects_by_role(const plan::Plan& plan, const plan::TaskRecord& task) {
     auto& objects = all.emplace_back(plan.text(role.name), std::vector<std::uint32_t>()).second;
     for (const plan::BodyRecord& body : plan.bodies(task).subspan(role.first, role.count))
       objects.push_back(body.index);
-    std::sort(objects.begin(), objects.end());
   }
   return all;
 }
@@ -37,7 +36,7 @@ std::vector<std::uint32_t> distractors(const plan::Plan& plan, const plan::TaskR
   return objects;
 }
 
-// Declared roles that parts and regions fill, ascending.
+// Declared roles that parts and regions fill, by name, those of a set in its order.
 std::vector<std::pair<std::string_view, std::string_view>> others_of_things(
     const plan::Plan& plan, const plan::TaskRecord& task) {
   std::vector<std::pair<std::string_view, std::string_view>> all;
@@ -46,11 +45,11 @@ std::vector<std::pair<std::string_view, std::string_view>> others_of_things(
     if (name != "source" && name != "target" && !plan::is_part_distractor(role))
       all.emplace_back(name, plan::thing_in(plan.tables(), task, role));
   }
-  std::ranges::sort(all);
+  std::ranges::stable_sort(all, {}, [](const auto& one) { return one.first; });
   return all;
 }
 
-// Whether the declared roles are filled by the same objects; those of a set in any order.
+// Whether the declared roles are filled by the same objects, those of a set in the same order.
 bool same_others(const plan::Plan& plan, const plan::TaskRecord& a, const plan::TaskRecord& b) {
   return objects_by_role(plan, a) == objects_by_role(plan, b) &&
          others_of_things(plan, a) == others_of_things(plan, b);

@@ -7,7 +7,7 @@
 namespace probe::plan {
 namespace {
 
-// The objects of a role, ascending; none where the task has no such role.
+// The objects of a role, in its order; none where the task has no such role.
 std::vector<std::uint32_t> objects_in(const Tables& tables, const TaskRecord& task,
                                       std::string_view name) {
   std::vector<std::uint32_t> objects;
@@ -17,7 +17,6 @@ std::vector<std::uint32_t> objects_in(const Tables& tables, const TaskRecord& ta
          slice_of(tables.bodies, {task.bodies.first + role->first, role->count}))
       objects.push_back(body.index);
   }
-  std::sort(objects.begin(), objects.end());
   return objects;
 }
 

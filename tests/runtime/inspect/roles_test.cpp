@@ -29,6 +29,7 @@ task pair like on_table {
 }
 variant pair_twig of pair { helper twig }
 task several like on_table { goods carrot, twig; layout alone; metrics on_plate; say "put {both goods} on {the plate}" }
+variant turned of several { goods twig, carrot }
 )");
   return plan;
 }
@@ -64,6 +65,13 @@ TEST_CASE("another helper is an axis of its own name") {
   const std::string other = diff_text(diff_tasks(with_roles(), task("pair"), task("several")));
   CHECK(other.find("* goods         none") != std::string::npos);
   CHECK(other.find("* source        carrot") != std::string::npos);
+}
+
+TEST_CASE("a set in another order is the axis of its role, as the compiler counts it") {
+  CHECK(describe(with_roles(), task("turned"))["axes"].dump() == R"(["object.goods"])");
+  const Json diff = diff_tasks(with_roles(), task("several"), task("turned"));
+  CHECK(diff["axes"].dump() == R"(["object.goods"])");
+  CHECK(diff["declared_axes"].dump() == R"(["object.goods"])");
 }
 
 TEST_CASE("the view from above knows who has which role") {
