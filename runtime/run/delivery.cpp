@@ -33,7 +33,8 @@ std::string count_of(int count, const char* what) {
 std::string visible_axes(std::uint32_t axes) {
   std::string names;
   for (const plan::Axis axis : plan::axes_in(axes)) {
-    if (info(axis).in != plan::AxisIn::kPicture) continue;
+    // Nothing has moved by itself yet where the first picture is made.
+    if (info(axis).in != plan::AxisIn::kPicture || axis == plan::Axis::kMotion) continue;
     if (!names.empty()) names += ", ";
     names += plan::axis_name(axis);
   }

@@ -3,9 +3,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "compiler/emit/compile.h"
+#include "runtime/plan/axes.h"
 #include "runtime/plan/plan.h"
 #include "runtime/store/not_attempted.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -14,8 +16,8 @@ namespace probe::run {
 using namespace probe::store;
 namespace {
 
-plan::Plan suite() {
-  const std::string files[] = {VLAPROBE_SOURCE_DIR "/suite/intact.probe"};
+plan::Plan suite(const char* file = "suite/intact.probe") {
+  const std::string files[] = {std::string(VLAPROBE_SOURCE_DIR "/") + file};
   auto compiled = build(files, {.asset_root = VLAPROBE_SOURCE_DIR "/assets",
                                 .suite = "",
                                 .library_folders = {VLAPROBE_SOURCE_DIR "/dsl"}});
@@ -98,6 +100,21 @@ TEST_CASE("distractors that the policy's picture does not show are found, start 
   CHECK(findings[0].episodes == 2);
   CHECK(findings[0].compared == 3);
   CHECK(to_json(findings).find("\"kind\": \"same_picture\"") != std::string::npos);
+}
+
+TEST_CASE("what moves by itself has not moved yet in the policy's first picture") {
+  const plan::Plan plan = suite("examples/moving.probe");
+  const auto compared = [&](const plan::TaskRecord& task) {
+    return task.baseline != plan::kNone && task.axes == plan::bit(plan::Axis::kMotion);
+  };
+  const auto tasks = plan.tasks();
+  const auto moving = std::ranges::find_if(tasks, compared);
+  REQUIRE(moving != tasks.end());
+  std::vector<ResultRow> rows = {
+      honest(plan, std::string(plan.text(tasks[moving->baseline].name)), 0),
+      honest(plan, std::string(plan.text(moving->name)), 0)};
+  rows[1].sent_image_sha256 = rows[0].sent_image_sha256;
+  CHECK(check_delivery(plan, rows).empty());
 }
 
 TEST_CASE("with no valid episode nothing is said of what reached the policy") {
