@@ -116,6 +116,9 @@ int why_verb(const WhyArguments& arguments) {
     put("\"{}\" is {}: in the settled start it denotes {}\n", claim.text, claim.object,
         denoted.empty() ? "nothing" : denoted);
   }
+  // Of what was not attempted there is nothing to judge.
+  if (why->steps == 0 && why->invalid && why->invalid->starts_with(store::kNotAttempted))
+    return kFine;
   for (const rejudge::MetricWhy& metric : why->metrics) {
     put("\n");
     print_metric(metric);
