@@ -5,7 +5,8 @@
 //   starts FILE.probe.. --assets DIR [--suite NAME] [--policy expert] [--tasks GLOB]
 //     [--starts 0,11,30-35] [--jobs 2] [-o rows.csv] [--watch]
 //
-// Without --suite: all tasks of all suites of each file. GLOB is of names without a suite's prefix.
+// Without --suite: all starts of all tasks of all suites of each file; with it those that the suite
+// has, of which it may have drawn some. GLOB is of names without a suite's prefix.
 // --watch tells of every tenth step where the tool, the objects and the joints of fixtures are.
 #include <algorithm>
 #include <atomic>
@@ -15,6 +16,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <thread>
@@ -189,15 +191,16 @@ class Campaign {
     }
     for (std::size_t p = 0; p < plans_.size(); ++p) {
       for (std::uint32_t t = 0; t < plans_[p].tasks().size(); ++t) {
-        // A suite that is named brings what its tasks are compared with; that is not played.
-        if (!options_.suite.empty() && !is_member(plans_[p], t)) continue;
         const auto count = plans_[p].episodes(plans_[p].tasks()[t]).size();
         PROBE_ASSIGN(const std::vector<bool> wanted, chosen(options_.starts, count));
-        for (std::uint32_t s = 0; s < count; ++s) {
+        for (const std::uint32_t s : starts_of(plans_[p], t)) {
           if (wanted[s]) jobs_.push_back({p, t, s});
         }
       }
     }
+    if (jobs_.empty())
+      return usage("no start of the files is of a task `" + options_.tasks +
+                   (options_.starts.empty() ? "`" : "` and one of " + options_.starts));
     rows_.resize(jobs_.size());
     if (options_.out.empty()) return {};
     out_.open(options_.out);
@@ -243,6 +246,17 @@ class Campaign {
   }
 
  private:
+  // A suite that is named brings what its tasks are compared with; that is not played.
+  std::vector<std::uint32_t> starts_of(const plan::Plan& plan, std::uint32_t task) const {
+    if (!options_.suite.empty()) {
+      if (!is_member(plan, task)) return {};
+      if (const auto suite = plan.find_suite(options_.suite))
+        return plan.episodes(plan.suites()[*suite], task);
+    }
+    std::vector<std::uint32_t> all(plan.episodes(plan.tasks()[task]).size());
+    std::iota(all.begin(), all.end(), 0U);
+    return all;
+  }
   std::string name_of(const Job& job) const {
     const plan::Plan& plan = plans_[job.plan];
     return std::string(plan.text(plan.tasks()[job.task].name));
