@@ -266,7 +266,7 @@ class BoundarySearch {
         static_cast<std::size_t>((level - 1) * ways_of(space_.axes[side.side.axis].kind));
     const PlannedPoint& point = planned.points[side.points[at]];
     if (!point.task) return;
-    hunt_.keep(point.point, "the first step beyond the interval of " + line);
+    hunt_.kept.push_back({point.point, "the first step beyond the interval of " + line});
   }
 
   Hunt& hunt_;

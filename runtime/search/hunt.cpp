@@ -105,11 +105,6 @@ std::string Hunt::point_name(const std::vector<double>& values) const {
   return fmt::format("{}_{:012x}", space().name, draw_of(values) >> 16);
 }
 
-void Hunt::keep(space::Point point, const std::string& remark) {
-  kept.push_back(std::move(point));
-  remarks.push_back("# " + remark + "\n");
-}
-
 Json json_of(const stats::Count& count) { return {count.k, count.n}; }
 Json json_of(const stats::Interval& interval) { return {interval.low, interval.high}; }
 

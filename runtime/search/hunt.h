@@ -30,9 +30,7 @@ struct Hunt {
   std::string round = {};                    // the folder of the round that is under way
   int rounds = 0;                            // its number, from 1 on
   Case whole;                                // of `minimal`: what is made smaller
-  // What is kept as a text at the end, with a comment for each.
-  std::vector<space::Point> kept = {};
-  std::vector<std::string> remarks = {};
+  std::vector<KeptPoint> kept = {};          // as a text at the end
 
   const sema::Space& space() const { return base.space(); }
   void tell(const std::string& what) const {
@@ -58,7 +56,6 @@ struct Hunt {
   // What is drawn beside a point: the same for the same point, however often it is asked for.
   std::uint64_t draw_of(const std::vector<double>& values) const;
   std::string point_name(const std::vector<double>& values) const;
-  void keep(space::Point point, const std::string& remark);
 };
 
 Json json_of(const stats::Count& count);
@@ -70,6 +67,11 @@ Status search_boundary(Hunt& hunt);
 // A shard of it is a search of its own: other draws and seeds, and its part of the error.
 Status search_worst(Hunt& hunt);
 inline constexpr int kMostWorstShards = 40;
+// Whether a case of a `worst`, as search.json has it, is.
+bool is_confirmed(const Json& one);
+// What a `worst` found, in words: a sentence a case, and what they come to. `cases` are as
+// search.json has them, `own` are the failures of the task itself among `trials` of all.
+std::vector<std::string> worst_lines(const Json& cases, const stats::Count& own, int trials);
 Status search_minimal(Hunt& hunt);
 // The case that `minimal` is asked about. Fails (kUsage) where it is none of the space.
 Result<Case> case_of(const SearchOptions& options, const BaseTask& base);
@@ -79,9 +81,6 @@ Status search_axes(Hunt& hunt);
 Result<std::vector<double>> read_point(const sema::Space& space, const std::string& text);
 // A case of a `worst` as its search.json has it. Fails (kUsage, where).
 Result<Case> read_case(const sema::Space& space, const Json& one, const std::string& where);
-// Writes found.probe in `folder` with the cases of a `worst` that are confirmed, none where there
-// are none. Reads the text that `findings` name. Fails where it is gone or another now.
-Status keep_found(const Json& findings, const std::string& folder);
 // Values of the axes of a case as json_of wrote it.
 Result<std::vector<double>> values_from(const sema::Space& space, const Json& changes);
 

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <memory>
 #include <set>
 #include <vector>
 
-#include "runtime/search/search.h"
-#include "runtime/search/shown_value.h"
+#include "runtime/search/hunt.h"
 
 namespace probe::search {
 namespace {
@@ -29,8 +30,6 @@ bool flag(const Json& from, const char* key) {
   const Json* const value = from.find(key);
   return value != nullptr && value->is_boolean() && value->get<bool>();
 }
-
-bool is_confirmed(const Json& one) { return flag(one, "confirmed"); }
 
 // "case 3: light.power x 0.3: fails in ..." with another number.
 std::string renumbered(const std::string& sentence, std::size_t number) {
@@ -90,25 +89,12 @@ Json joined_worst(std::span<const WorstShard> shards) {
     if (is_confirmed(a) != is_confirmed(b)) return is_confirmed(a);
     return number(a, "distance") < number(b, "distance");
   });
-  std::size_t confirmed = 0;
   for (Json& one : found) {
-    const std::string line = renumbered(one.value("sentence", ""), cases.size() + 1);
-    one["sentence"] = line;
-    confirmed += is_confirmed(one) ? 1 : 0;
-    lines.push_back(line);
+    one["sentence"] = renumbered(one.value("sentence", ""), cases.size() + 1);
     cases.push_back(std::move(one));
   }
-  if (cases.empty()) {
-    lines.push_back(fmt::format("nothing failed in {} trials: no case is claimed, which does not "
-                                "say that there is none",
-                                whole(joined, "trials")));
-  } else if (own.n > 0 && own.k == own.n) {
-    lines = Json::array();
-    lines.push_back(fmt::format("the task itself fails in {} trials: there is nothing to break",
-                                k_of_n(own)));
-  } else if (confirmed == 0) {
-    lines.push_back("no case fails more often than the task itself does, as far as fresh trials tell");
-  }
+  for (const std::string& line : worst_lines(cases, own, whole(joined, "trials")))
+    lines.push_back(line);
   if (own.n > 0) {
     joined["own_failures"] = {own.k, own.n};
     joined["rate"] = rate;
@@ -117,6 +103,26 @@ Json joined_worst(std::span<const WorstShard> shards) {
   joined["cases"] = std::move(cases);
   joined["lines"] = std::move(lines);
   return joined;
+}
+
+Status keep_found(const Json& findings, const std::string& folder) {
+  const Json& asked = findings.at("asked");
+  TextOptions text;
+  text.file = findings.value("file", "");
+  text.space = asked.value("space", "");
+  std::string said;
+  PROBE_ASSIGN(const std::unique_ptr<BaseTask> base, BaseTask::open(text, said));
+  if (base->hash() != asked.value("text_sha256", ""))
+    return Failure{Fault::kUsage, "the text has changed since the search", text.file};
+  std::vector<KeptPoint> kept;
+  for (const Json& one : findings.at("cases")) {
+    if (!is_confirmed(one)) continue;
+    PROBE_ASSIGN(Case found, read_case(base->space(), one, folder));
+    kept.push_back({{one.value("name", ""), std::move(found.values), *found.draw, {}},
+                    one.value("sentence", "")});
+  }
+  if (kept.empty()) return {};
+  return write_found(*base, kept, (std::filesystem::path(folder) / "found.probe").string());
 }
 
 }  // namespace probe::search

@@ -28,4 +28,8 @@ Result<WorstShard> worst_shard(const std::string& folder, Json findings);
 // `shards`: in the order of their numbers, at least one.
 Json joined_worst(std::span<const WorstShard> shards);
 
+// Writes found.probe in `folder` with the cases that are confirmed, none where there are none.
+// Reads the text that `findings` name. Fails where it is gone or another now.
+Status keep_found(const Json& findings, const std::string& folder);
+
 }  // namespace probe::search

@@ -118,7 +118,7 @@ Status search_minimal(Hunt& hunt) {
       if (found.doubtful != 0)
         line += "; of " + space::point_text(space, values_with(found.doubtful)) +
                 " it is not certain that it is needed";
-      hunt.keep(point_with(found.set), line);
+      hunt.kept.push_back({point_with(found.set), line});
       break;
     case MinimalStatus::kFailsAtOwnPoint:
       line = "the task fails with nothing changed";

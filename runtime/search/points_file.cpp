@@ -281,18 +281,19 @@ Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point
   return planned;
 }
 
-Status write_found(const BaseTask& base, const std::vector<space::Point>& points,
-                   const std::vector<std::string>& remarks, const std::string& file) {
+Status write_found(const BaseTask& base, const std::vector<KeptPoint>& kept,
+                   const std::string& file) {
   const std::string folder = fs::path(file).parent_path().string();
   const std::string name = fs::path(file).filename().string();
   // Twice: what is confounded is known when it was looked at.
   std::set<std::size_t> allowed;
   for (int round = 0; round < 2; ++round) {
     Page page(base, folder);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < kept.size(); ++i) {
       space::WrittenPoint written;
-      PROBE_ASSIGN([[maybe_unused]] const bool is_there,
-                   page.add(i, points[i], written, allowed.contains(i), remarks[i]));
+      PROBE_ASSIGN(
+          [[maybe_unused]] const bool is_there,
+          page.add(i, kept[i].point, written, allowed.contains(i), "# " + kept[i].remark + "\n"));
     }
     PROBE_ASSIGN(const Pages pages, page.finish(free_suite(base, "found"), name));
     if (round == 1) break;

@@ -45,9 +45,13 @@ Result<PlannedPoints> plan_points(const BaseTask& base, std::vector<space::Point
 // As a `use` in a file of `folder` says `file`. A way up through a link would lead elsewhere.
 std::string use_of(const std::string& file, const std::string& folder);
 
-// A text of these points as one writes it to keep: `file` with its tables beside it, a suite
-// `found`. Comments say of each what `remarks` has for it.
-Status write_found(const BaseTask& base, const std::vector<space::Point>& points,
-                   const std::vector<std::string>& remarks, const std::string& file);
+// A point that is kept as a text, and what a comment says of it.
+struct KeptPoint {
+  space::Point point;
+  std::string remark;
+};
+// The text as one writes it to keep: `file` with its tables beside it, a suite `found`.
+Status write_found(const BaseTask& base, const std::vector<KeptPoint>& kept,
+                   const std::string& file);
 
 }  // namespace probe::search

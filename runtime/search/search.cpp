@@ -216,7 +216,7 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   }
   if (!hunt.kept.empty()) {
     const std::string file = (fs::path(options.run.out) / "found.probe").string();
-    PROBE_TRY(write_found(*base, hunt.kept, hunt.remarks, file));
+    PROBE_TRY(write_found(*base, hunt.kept, file));
     summary.notes.push_back("what was found, as variants to keep: " + file);
   }
   Json lines = Json::array();

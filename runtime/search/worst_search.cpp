@@ -2,8 +2,8 @@
 // trials that took no part in finding it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "runtime/base/hash_number.h"
 #include "runtime/base/sha256.h"
@@ -59,11 +59,8 @@ Status search_worst(Hunt& hunt) {
   const std::vector<Candidate> candidates = worst.candidates();
   SearchSummary& summary = hunt.summary;
   Json cases = Json::array();
-  if (candidates.empty()) {
-    summary.lines.push_back(fmt::format(
-        "nothing failed in {} trials: no case is claimed, which does not say that there is none",
-        worst.trials()));
-  } else {
+  stats::Count own;
+  if (!candidates.empty()) {
     hunt.tell(fmt::format("{} cases to be confirmed", candidates.size()));
     ConfirmOptions confirming;
     confirming.error /= shards;
@@ -72,9 +69,9 @@ Status search_worst(Hunt& hunt) {
                                [&](std::span<const Outcome> told) { confirm.tell(told); }},
                               "confirm" + of_shard, kFreshSeeds + first_seed));
     const Confirmation found = confirm.confirmation();
-    summary.findings["own_failures"] = json_of(found.own);
+    own = found.own;
+    summary.findings["own_failures"] = json_of(own);
     summary.findings["rate"] = found.rate;
-    std::size_t confirmed = 0;
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const ConfirmedCase& one = found.cases[i];
       const std::vector<double> values =
@@ -83,9 +80,8 @@ Status search_worst(Hunt& hunt) {
       std::string line = fmt::format("case {}: {}: fails in {} fresh trials", i + 1, changes,
                                      k_of_n(one.failures));
       line += one.confirmed ? fmt::format(", in {:.0f} % or more of all (the task itself: {})",
-                                          std::floor(100 * one.low), k_of_n(found.own))
+                                          std::floor(100 * one.low), k_of_n(own))
                             : ", which is not confirmed: the best of many is lucky";
-      summary.lines.push_back(line);
       const space::Point point{hunt.point_name(values), values, hunt.draw_of(values), {}};
       cases.push_back({{"name", point.name},
                        {"changes", json_of(space, values)},
@@ -98,43 +94,33 @@ Status search_worst(Hunt& hunt) {
                        {"p", one.p},
                        {"confirmed", one.confirmed},
                        {"sentence", line}});
-      if (!one.confirmed) continue;
-      ++confirmed;
-      hunt.keep(point, line);
+      if (one.confirmed) hunt.kept.push_back({point, line});
     }
-    if (found.own.n > 0 && found.own.k == found.own.n) {
-      summary.lines = {fmt::format("the task itself fails in {} trials: there is nothing to break",
-                                   k_of_n(found.own))};
-    } else if (confirmed == 0)
-      summary.lines.push_back(
-          "no case fails more often than the task itself does, as far as fresh "
-          "trials tell");
   }
+  summary.lines = worst_lines(cases, own, worst.trials());
   summary.findings["cases"] = std::move(cases);
   return {};
 }
 
-Status keep_found(const Json& findings, const std::string& folder) {
-  const Json& asked = findings.at("asked");
-  TextOptions text;
-  text.file = findings.value("file", "");
-  text.space = asked.value("space", "");
-  std::string said;
-  PROBE_ASSIGN(const std::unique_ptr<BaseTask> base, BaseTask::open(text, said));
-  if (base->hash() != asked.value("text_sha256", ""))
-    return Failure{Fault::kUsage, "the text has changed since the search", text.file};
-  std::vector<space::Point> points;
-  std::vector<std::string> remarks;
-  for (const Json& one : findings.at("cases")) {
-    const Json* const confirmed = one.find("confirmed");
-    if (confirmed == nullptr || !confirmed->is_boolean() || !confirmed->get<bool>()) continue;
-    PROBE_ASSIGN(Case found, read_case(base->space(), one, folder));
-    points.push_back({one.value("name", ""), std::move(found.values), *found.draw, {}});
-    remarks.push_back("# " + one.value("sentence", "") + "\n");
-  }
-  if (points.empty()) return {};
-  return write_found(*base, points, remarks,
-                     (std::filesystem::path(folder) / "found.probe").string());
+bool is_confirmed(const Json& one) {
+  const Json* const confirmed = one.find("confirmed");
+  return confirmed != nullptr && confirmed->is_boolean() && confirmed->get<bool>();
+}
+
+std::vector<std::string> worst_lines(const Json& cases, const stats::Count& own, int trials) {
+  if (cases.empty())
+    return {fmt::format(
+        "nothing failed in {} trials: no case is claimed, which does not say that there is none",
+        trials)};
+  if (own.n > 0 && own.k == own.n)
+    return {
+        fmt::format("the task itself fails in {} trials: there is nothing to break", k_of_n(own))};
+  std::vector<std::string> lines;
+  for (const Json& one : cases) lines.push_back(one.value("sentence", ""));
+  if (std::ranges::none_of(cases, is_confirmed))
+    lines.push_back(
+        "no case fails more often than the task itself does, as far as fresh trials tell");
+  return lines;
 }
 
 }  // namespace probe::search
