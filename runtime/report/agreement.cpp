@@ -52,9 +52,10 @@ bool has_open_quote(std::string_view line) { return std::ranges::count(line, '"'
 
 bool is_rate(const PublishedFigure& figure) { return figure.metric == "success_rate"; }
 
-std::string column_of(const PublishedFigure& figure) {
-  if (figure.subtask.empty() || figure.subtask == "average") return figure.task;
-  return figure.task + "_" + figure.subtask;
+// What the column of a figure or of a row of agreements is called: "drawer_open".
+std::string column_of(const auto& of) {
+  if (of.subtask.empty() || of.subtask == "average") return of.task;
+  return of.task + "_" + of.subtask;
 }
 
 stats::MeasuredRate measured(const PublishedFigure& figure) {
@@ -385,10 +386,6 @@ std::vector<std::string> impossible_rates(const RateTable& table) {
 }
 
 namespace {
-
-std::string column_of(const AgreementRow& row) {
-  return row.subtask == "average" || row.subtask.empty() ? row.task : row.task + "_" + row.subtask;
-}
 
 // Policies that are in no figure of a column as they have one rate of two: a line for all columns
 // of a protocol that lack the same.
