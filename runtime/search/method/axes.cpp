@@ -56,7 +56,8 @@ class Analysis {
     found.left_out = left_out_;
     found.failures = {static_cast<std::int64_t>(all_.size() - successes_.size()),
                       static_cast<std::int64_t>(all_.size())};
-    if (found.failures.n < least_) return nothing_said(std::move(found));
+    found.too_few = found.failures.n < least_;
+    if (found.too_few) return found;
     test_axes(found);
     test_pairs(found);
     if (!all_.empty()) share_out(found);
@@ -64,21 +65,6 @@ class Analysis {
   }
 
  private:
-  AxesFinding nothing_said(AxesFinding found) const {
-    found.too_few = true;
-    found.axes.resize(axis_count_);
-    for (std::size_t a = 0; a < axis_count_; ++a) {
-      for (std::size_t b = a + 1; b < axis_count_; ++b) {
-        PairEffect pair;
-        pair.a = a;
-        pair.b = b;
-        pair.tested = false;
-        found.pairs.push_back(pair);
-      }
-    }
-    return found;
-  }
-
   // Points that were left out may tie axes to one another. What such an axis does is then looked at
   // where the axes that it is tied to are in one part.
   void find_ties() {

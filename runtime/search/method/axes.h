@@ -74,7 +74,7 @@ struct PairEffect {
 struct AxesFinding {
   stats::Count failures;
   int left_out = 0;
-  // Fewer trials count than least_trials: axes and pairs are there, and nothing is said of them.
+  // Fewer trials count than least_trials, and nothing is said: axes and pairs are empty.
   bool too_few = false;
   std::vector<AxisEffect> axes;   // in the order of the space
   std::vector<PairEffect> pairs;  // (0,1), (0,2), .., (1,2), ..
