@@ -10,11 +10,15 @@
 #include "compiler/define/telling.h"
 #include "compiler/define/template.h"
 #include "compiler/emit/analyzed.h"
+#include "compiler/emit/early_end.h"
 #include "compiler/emit/emit.h"
 #include "compiler/syntax/parser.h"
 
 namespace probe {
 namespace {
+
+// Of more starts the judge is not asked in made-up worlds while a text is checked or built.
+constexpr std::size_t kMostStartsJudged = 20'000;
 
 // All files that the roots reach, each once, a file after those it uses.
 struct Loaded {
@@ -176,7 +180,9 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
-  const bool write = plan.is_wanted && (plan.is_kept || compilation.starts <= plan.most_starts);
+  const bool looks = compilation.starts <= kMostStartsJudged && emit::may_end_early(analyzed.model);
+  const bool write =
+      (plan.is_wanted && (plan.is_kept || compilation.starts <= plan.most_starts)) || looks;
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
@@ -190,9 +196,11 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
         .hashed = hashed};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
+    if (looks && !compilation.plan.empty())
+      PROBE_TRY(emit::note_early_ends(analyzed.model, compilation.plan, compilation.diagnostics));
   }
   compilation.ok = !compilation.diagnostics.has_errors();
-  if (!compilation.ok) compilation.plan.clear();
+  if (!compilation.ok || !plan.is_wanted) compilation.plan.clear();
   return std::move(compilation);
 }
 

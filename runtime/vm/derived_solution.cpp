@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "runtime/plan/fixtures.h"
+#include "runtime/plan/readouts.h"
 #include "runtime/plan/regions.h"
 #include "runtime/plan/roles.h"
 #include "runtime/plan/skills.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr double kAngleStep = std::numbers::pi / 36;  // rad: how finely a wanted turn is found
 constexpr double kTurnRoom = 2;                       // steps more than the least that is enough
 constexpr std::size_t kMostPuts = 150;                // of which all pairs are asked about
+constexpr std::size_t kMostReordered = 5;             // skills of which every order is asked about
 constexpr double kHalfOpen = 0.5;  // of the way: what is less open is opened to put something in
 
 // A part's joint at one of its ends, or turned by an angle.
@@ -115,34 +117,10 @@ class Deriver {
     Arranged done;
     std::vector<Arranged> stages;
     for (const plan::SkillRecord& skill : said) {
-      const auto place =
-          std::ranges::find(done.objects, skill.body, &std::pair<std::uint32_t, PutPlace>::first);
-      switch (static_cast<plan::Skill>(skill.skill)) {
-        case plan::Skill::kPick:
-          if (place != done.objects.end()) done.objects.erase(place);
-          break;
-        case plan::Skill::kPut: {
-          if (goes_into_closed(skill, done))
-            return fmt::format("`{}` goes into what is closed then",
-                               plan::skill_text(plan_.tables(), skill));
-          if (place != done.objects.end()) done.objects.erase(place);
-          done.objects.emplace_back(skill.body, place_of(skill));
-          break;
-        }
-        case plan::Skill::kOpen:
-        case plan::Skill::kClose:
-        case plan::Skill::kTurn: {
-          const auto move = move_of(skill, done);
-          if (!move) return std::string();
-          std::erase_if(done.joints,
-                        [&](const JointMove& other) { return other.joint == move->joint; });
-          done.joints.push_back(*move);
-          break;
-        }
-        case plan::Skill::kPress:
-        case plan::Skill::kPush:
-          return std::string();  // where things are then is not known
-      }
+      if (goes_into_closed(skill, done))
+        return fmt::format("`{}` goes into what is closed then",
+                           plan::skill_text(plan_.tables(), skill));
+      if (!add(skill, &done)) return std::string();
       stages.push_back(done);
     }
     // What is held at the end is where the hand is.
@@ -163,7 +141,100 @@ class Deriver {
     return fmt::format("when it is done `success` is not true; `{}` makes it so", other);
   }
 
+  // Where `ends`, what ends an episode, holds before all of the skills are done and success is not
+  // true then: in the order in which they are said, or else in each in which they can be done.
+  Result<std::optional<EarlyEnd>> early_end(std::span<const plan::SkillRecord> skills, bool is_said,
+                                            std::uint32_t ends) {
+    if (skills.size() > kMostReordered && !is_said) return std::optional<EarlyEnd>();
+    moves_.clear();
+    places_.clear();
+    find_joint_moves();
+    Walk walk{{skills.begin(), skills.end()}, is_said, ends, {}, {}, {}};
+    PROBE_ASSIGN(const bool comes_through, can_be_done(walk));
+    if (comes_through || !walk.found) return std::optional<EarlyEnd>();
+    return walk.found;
+  }
+
  private:
+  // Skills in one order: those that are done, how things lie after each, and those that are left.
+  struct Walk {
+    std::vector<plan::SkillRecord> left;
+    bool is_in_order = false;
+    std::uint32_t ends = 0;  // metric
+    std::vector<plan::SkillRecord> done;
+    std::vector<Arranged> stages;
+    std::optional<EarlyEnd> found;  // by the first order that was tried
+  };
+
+  // Whether some order of what is left does all of it before the episode ends, or ends it with
+  // success; also where it cannot be told.
+  Result<bool> can_be_done(Walk& walk) const {
+    if (walk.left.empty()) return true;
+    if (!walk.stages.empty() && !is_held_after(walk)) {
+      PROBE_ASSIGN(const bool is_over, holds_in_all(walk.ends, walk.stages));
+      if (is_over) {
+        PROBE_ASSIGN(const bool is_success, holds_in_any(success_, walk.stages));
+        if (!is_success && !walk.found) walk.found = EarlyEnd{0, walk.done, walk.left};
+        return is_success;
+      }
+    }
+    for (std::size_t i = 0; i < walk.left.size() && (i == 0 || !walk.is_in_order); ++i) {
+      const plan::SkillRecord skill = walk.left[i];
+      Arranged after = walk.stages.empty() ? Arranged{} : walk.stages.back();
+      if (!walk.is_in_order && (goes_into_closed(skill, after) || waits(walk, i))) continue;
+      if (!add(skill, &after)) return true;
+      walk.left.erase(walk.left.begin() + static_cast<std::ptrdiff_t>(i));
+      walk.done.push_back(skill);
+      walk.stages.push_back(std::move(after));
+      PROBE_ASSIGN(const bool is_done, can_be_done(walk));
+      walk.stages.pop_back();
+      walk.done.pop_back();
+      walk.left.insert(walk.left.begin() + static_cast<std::ptrdiff_t>(i), skill);
+      if (is_done) return true;
+    }
+    return false;
+  }
+
+  // What one has in the hand is where that is.
+  static bool is_held_after(const Walk& walk) {
+    return static_cast<plan::Skill>(walk.done.back().skill) == plan::Skill::kPick;
+  }
+
+  // What is done twice to one thing is done in the order in which it is said: opened, then closed.
+  static bool waits(const Walk& walk, std::size_t at) {
+    return std::any_of(
+        walk.left.begin(), walk.left.begin() + static_cast<std::ptrdiff_t>(at),
+        [&](const plan::SkillRecord& other) { return other.body == walk.left[at].body; });
+  }
+
+  // What is so when a skill is done as well; false where that is not known.
+  bool add(const plan::SkillRecord& skill, Arranged* done) const {
+    const auto lies = [&](const auto& put) { return put.first == skill.body; };
+    switch (static_cast<plan::Skill>(skill.skill)) {
+      case plan::Skill::kPick:
+        std::erase_if(done->objects, lies);
+        return true;
+      case plan::Skill::kPut:
+        std::erase_if(done->objects, lies);
+        done->objects.emplace_back(skill.body, place_of(skill));
+        return true;
+      case plan::Skill::kOpen:
+      case plan::Skill::kClose:
+      case plan::Skill::kTurn: {
+        const auto move = move_of(skill, *done);
+        if (!move) return false;
+        std::erase_if(done->joints,
+                      [&](const JointMove& other) { return other.joint == move->joint; });
+        done->joints.push_back(*move);
+        return true;
+      }
+      case plan::Skill::kPress:
+      case plan::Skill::kPush:
+        return false;
+    }
+    return false;
+  }
+
   static PutPlace place_of(const plan::SkillRecord& put) {
     return {put.to, put.region, static_cast<plan::SkillRelation>(put.relation)};
   }
@@ -381,13 +452,29 @@ class Deriver {
   // Whether success holds when one is so after the other, nothing having been done before the
   // first.
   Result<bool> holds_through(std::span<const Arranged> stages) const {
+    return holds_in_all(success_, stages);
+  }
+
+  // The same of any metric: wherever things were made up to be, and anywhere.
+  Result<bool> holds_in_all(std::uint32_t metric, std::span<const Arranged> stages) const {
     for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
-      std::vector<MadeUpWorld> worlds = {*still};
-      for (const Arranged& stage : stages) worlds.push_back(world_of(*still, stage, false));
-      PROBE_ASSIGN(const bool is_success, judge_worlds(plan_, task_, success_, std::move(worlds)));
-      if (!is_success) return false;
+      PROBE_ASSIGN(const bool holds, holds_from(*still, metric, stages));
+      if (!holds) return false;
     }
     return true;
+  }
+  Result<bool> holds_in_any(std::uint32_t metric, std::span<const Arranged> stages) const {
+    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
+      PROBE_ASSIGN(const bool holds, holds_from(*still, metric, stages));
+      if (holds) return true;
+    }
+    return false;
+  }
+  Result<bool> holds_from(const MadeUpWorld& still, std::uint32_t metric,
+                          std::span<const Arranged> stages) const {
+    std::vector<MadeUpWorld> worlds = {still};
+    for (const Arranged& stage : stages) worlds.push_back(world_of(still, stage, false));
+    return judge_worlds(plan_, task_, metric, std::move(worlds));
   }
 
   MadeUpWorld world_of(const MadeUpWorld& still, const Arranged& bundle, bool handled) const {
@@ -518,6 +605,30 @@ Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task)
     return start == 0 ? flaw : fmt::format("where it begins as in start {}: {}", start, flaw);
   }
   return std::string();
+}
+
+Result<std::optional<EarlyEnd>> early_end(const plan::Plan& plan, std::uint32_t task) {
+  const auto success = plan.find_metric(plan.tasks()[task], "success");
+  const auto ends = plan.find_metric(plan.tasks()[task], plan::kEndsMetric);
+  if (!success || !ends || plan.episodes(plan.tasks()[task]).empty())
+    return std::optional<EarlyEnd>();
+  const auto said = plan::skills_of(plan.tables(), task);
+  for (const std::uint32_t start : kinds_of_starts(plan, task)) {
+    // What is over as it begins is told by P0607.
+    PROBE_ASSIGN(const bool is_over,
+                 judge_world(plan, task, *ends, make_up_world(plan, task, start)));
+    if (is_over) continue;
+    Deriver deriver(plan, task, *success, start);
+    std::vector<plan::SkillRecord> skills(said.begin(), said.end());
+    if (said.empty()) {
+      PROBE_ASSIGN(skills, deriver.run());
+    }
+    PROBE_ASSIGN(auto found, deriver.early_end(skills, !said.empty(), *ends));
+    if (!found) continue;
+    found->start = start;
+    return found;
+  }
+  return std::optional<EarlyEnd>();
 }
 
 Result<bool> holds_in_either_order(const plan::Plan& plan, std::uint32_t task) {

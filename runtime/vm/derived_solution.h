@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,17 @@ Result<std::vector<plan::SkillRecord>> derive_solution(const plan::Plan& plan, s
 // told: of what is pressed, pushed or held at the end. Of the first kind of start in which it is
 // so.
 Result<std::string> flaw_of_solution(const plan::Plan& plan, std::uint32_t task);
+
+// Skills that are done when what ends an episode (`ends when`) holds, while others, without which
+// `success` is not true, are still to be done.
+struct EarlyEnd {
+  std::uint32_t start = 0;  // the first of the kind of starts in which it is so
+  std::vector<plan::SkillRecord> done, left;
+};
+// By the same made-up worlds: of the skills that the text says, in their order, or of those that
+// are derived, whichever is done first. None where an episode can come to success, where nothing
+// ends it, where it is over as it begins, and where it cannot be told.
+Result<std::optional<EarlyEnd>> early_end(const plan::Plan& plan, std::uint32_t task);
 
 // Whether the task is solved by putting two things somewhere, as its text says or as is derived,
 // and success is true whichever of them is put first, in some kind of start.

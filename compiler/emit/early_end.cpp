@@ -1,0 +1,142 @@
+#include "compiler/emit/early_end.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "compiler/model/same.h"
+#include "runtime/plan/plan.h"
+#include "runtime/plan/readouts.h"
+#include "runtime/plan/skills.h"
+#include "runtime/vm/derived_solution.h"
+#include "runtime/vm/made_up.h"
+
+namespace probe::emit {
+namespace {
+
+using sema::Metric;
+using sema::Task;
+
+const Metric* metric_of(const Task& task, std::string_view name) {
+  const auto found = std::ranges::find(task.judged, name, &Metric::name);
+  return found == task.judged.end() ? nullptr : &*found;
+}
+
+std::vector<sema::ExprRef> conditions_of(const sema::Model& model, sema::ExprRef expr) {
+  const sema::ExprNode& node = model.exprs.nodes[expr];
+  if (node.op != sema::ExprOp::kAnd) return {expr};
+  std::vector<sema::ExprRef> all;
+  for (const sema::ExprRef arg : node.args) {
+    const auto more = conditions_of(model, arg);
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+// Whether success may be false where the episode ends: it asks for something that `ends` does not.
+bool may_end_early(const sema::Model& model, const Task& task) {
+  const Metric* const success = metric_of(task, "success");
+  const Metric* const ends = metric_of(task, plan::kEndsMetric);
+  if (task.abstract || !task.complete || success == nullptr || ends == nullptr) return false;
+  if (success->readout != plan::Readout::kAtEnd && success->readout != plan::Readout::kOnce)
+    return true;
+  const std::vector<sema::ExprRef> held = conditions_of(model, ends->expr);
+  return !std::ranges::all_of(conditions_of(model, success->expr), [&](sema::ExprRef asked) {
+    return std::ranges::any_of(
+        held, [&](sema::ExprRef one) { return sema::same_expression(model, one, asked); });
+  });
+}
+
+std::string in_words(const plan::Plan& plan, const std::vector<plan::SkillRecord>& skills) {
+  std::string text;
+  for (const plan::SkillRecord& skill : skills)
+    text += (text.empty() ? "`" : "; ") + plan::skill_text(plan.tables(), skill);
+  return text + "`";
+}
+
+// All that the answer depends on.
+using Asked =
+    std::tuple<std::uint32_t, std::uint32_t, std::string, std::vector<std::vector<double>>>;
+
+Asked asked_of(const plan::Plan& plan, std::uint32_t task) {
+  const plan::TaskRecord& record = plan.tasks()[task];
+  std::string said;
+  for (const plan::SkillRecord& skill : plan::skills_of(plan.tables(), task))
+    said += plan::skill_text(plan.tables(), skill) + ";";
+  std::vector<std::vector<double>> kinds;
+  for (const std::uint32_t start : vm::kinds_of_starts(plan, task))
+    kinds.push_back(vm::begins_as(plan, task, start));
+  return {record.program, record.scene, std::move(said), std::move(kinds)};
+}
+
+void report(const plan::Plan& plan, const Task& task, const vm::EarlyEnd& early,
+            Diagnostics& diagnostics) {
+  const Metric& success = *metric_of(task, "success");
+  const Metric& ends = *metric_of(task, plan::kEndsMetric);
+  std::string where;
+  if (early.start != 0) where = ", as start " + std::to_string(early.start) + " begins";
+  Diagnostic& said =
+      diagnostics.report(Code::P0608, task.place(success.span),
+                         "`ends when` of `" + task.name +
+                             "` ends the episode before `success` can be true: it holds after " +
+                             in_words(plan, early.done) + ", with " + in_words(plan, early.left) +
+                             " still to be done" + where);
+  said.label(ends.span, "the episode is over here");
+  if (!(success.span == task.place(success.span))) said.label(success.span, "judged by this");
+  said.help(
+      "a `success` that is replaced keeps the `ends when` that came with it: write `ends when ..` "
+      "anew, by what success asks");
+}
+
+}  // namespace
+
+bool may_end_early(const sema::Model& model) {
+  return std::ranges::any_of(model.tasks,
+                             [&](const Task& task) { return may_end_early(model, task); });
+}
+
+Status note_early_ends(const sema::Model& model, const std::vector<std::byte>& bytes,
+                       Diagnostics& diagnostics) {
+  std::map<std::string_view, const Task*> written;
+  for (const Task& task : model.tasks) {
+    if (may_end_early(model, task)) written.emplace(task.name, &task);
+  }
+  if (written.empty()) return {};
+  PROBE_ASSIGN(const plan::Plan plan, plan::Plan::from_bytes(bytes, {.identity = false}));
+  std::map<Asked, std::optional<vm::EarlyEnd>> known;
+  // By place: what was said of the first of its tasks, and of how many others it is so.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>> places;
+  Diagnostics found;
+  for (std::uint32_t index = 0; index < plan.tasks().size(); ++index) {
+    const auto task = written.find(plan.text(plan.tasks()[index].name));
+    if (task == written.end()) continue;
+    const auto [at, is_new] = known.try_emplace(asked_of(plan, index));
+    if (is_new) {
+      PROBE_ASSIGN(at->second, vm::early_end(plan, index));
+    }
+    if (!at->second) continue;
+    const Span& place = task->second->place(metric_of(*task->second, "success")->span);
+    const auto [said, is_first] =
+        places.try_emplace({place.file.value, place.begin}, found.size(), 0);
+    if (is_first) {
+      report(plan, *task->second, *at->second, found);
+    } else {
+      ++said->second.second;
+    }
+  }
+  for (std::size_t i = 0; i < found.items().size(); ++i) {
+    Diagnostic& said = diagnostics.add(found.items()[i]);
+    for (const auto& [place, one] : places) {
+      if (one.first != i || one.second == 0) continue;
+      said.note("the same holds for " + std::to_string(one.second) + " more task" +
+                (one.second == 1 ? "" : "s"));
+    }
+  }
+  return {};
+}
+
+}  // namespace probe::emit
