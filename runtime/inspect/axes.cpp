@@ -218,20 +218,78 @@ bool same_moves(const plan::Plan& plan, const plan::TaskRecord& a, const plan::T
       });
 }
 
-// Whether the rest of two scenes is alike whose surfaces are of different heights: what stands at
-// the same place stands alike, and so does what is as high above the surface.
-bool same_but_for_height(plan::IdHasher& hasher, const plan::SceneRecord& here,
-                         plan::SceneRecord there) {
+// Whether what stands at `b` stands as at `a` where surfaces are of different heights: at the same
+// place, or as high above the surface.
+bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::array<double, 3>& b,
+                  double surface_b) {
   constexpr double kRounding = 1e-9;  // m
-  const auto stand_alike = [&](const std::array<double, 3>& a, std::array<double, 3>& b) {
-    const double above = (a[2] - here.surface_z) - (b[2] - there.surface_z);
-    if (std::abs(above) <= kRounding) b[2] = a[2];
+  const double above = (a[2] - surface_a) - (b[2] - surface_b);
+  return a[0] == b[0] && a[1] == b[1] && (a[2] == b[2] || std::abs(above) <= kRounding);
+}
+
+// All of a fixture but where it stands and where its joints begin.
+bool acts_alike(const plan::Plan& plan, const plan::FixtureRecord& a,
+                const plan::FixtureRecord& b) {
+  const plan::Tables& tables = plan.tables();
+  const auto same = [](const auto& here, const auto& there, const auto& is_same) {
+    return std::ranges::equal(here, there, is_same);
   };
-  stand_alike(here.base_position, there.base_position);
-  stand_alike(here.fixture_position, there.fixture_position);
+  const auto same_joint = [&](const plan::FixtureJointRecord& p,
+                              const plan::FixtureJointRecord& q) {
+    return plan.text(p.joint) == plan.text(q.joint) && p.motion == q.motion && p.lower == q.lower &&
+           p.upper == q.upper && p.friction == q.friction && p.damping == q.damping &&
+           p.stiffness == q.stiffness && p.rest == q.rest;
+  };
+  const auto same_shown = [&](const plan::ShownRecord& p, const plan::ShownRecord& q) {
+    return plan.text(p.link) == plan.text(q.link) && p.joint == q.joint && p.side == q.side &&
+           p.at == q.at;
+  };
+  return a.urdf == b.urdf && a.rotation == b.rotation && a.friction == b.friction &&
+         std::ranges::equal(plan::slice_of(tables.list, a.meshes),
+                            plan::slice_of(tables.list, b.meshes)) &&
+         std::ranges::equal(plan.armatures(a), plan.armatures(b)) &&
+         same(plan::slice_of(tables.fixture_joints, a.joints),
+              plan::slice_of(tables.fixture_joints, b.joints), same_joint) &&
+         same(plan::slice_of(tables.shown, a.shown), plan::slice_of(tables.shown, b.shown),
+              same_shown);
+}
+
+// Whether the rest of two scenes is alike whose surfaces are of different heights.
+bool same_but_for_height(const plan::Plan& plan, plan::IdHasher& hasher, plan::SceneRecord here,
+                         plan::SceneRecord there) {
+  const auto fixtures = [&](const plan::SceneRecord& scene) {
+    return plan::slice_of(plan.tables().list, scene.fixtures);
+  };
+  const auto same_fixture = [&](std::uint32_t p, std::uint32_t q) {
+    const plan::FixtureRecord &a = plan.fixtures()[p], &b = plan.fixtures()[q];
+    return acts_alike(plan, a, b) &&
+           stands_alike(a.position, here.surface_z, b.position, there.surface_z);
+  };
+  if (!std::ranges::equal(fixtures(here), fixtures(there), same_fixture) ||
+      !stands_alike(here.base_position, here.surface_z, there.base_position, there.surface_z) ||
+      !stands_alike(here.fixture_position, here.surface_z, there.fixture_position, there.surface_z))
+    return false;
+  here.fixtures = there.fixtures = {};
+  there.base_position = here.base_position;
+  there.fixture_position = here.fixture_position;
   there.surface_z = here.surface_z;
   return hasher.surroundings_at(here, here.surface_z) ==
          hasher.surroundings_at(there, here.surface_z);
+}
+
+// Whether both descend from one task, and by what the compiler says of each step no words moved on
+// the way to either.
+bool same_words_since(const plan::Plan& plan, std::uint32_t a, std::uint32_t b) {
+  const auto root = [&](std::uint32_t task) -> std::optional<std::uint32_t> {
+    for (std::uint32_t up = plan.tasks()[task].baseline; up != plan::kNone;
+         up = plan.tasks()[task].baseline) {
+      if ((plan.tasks()[task].axes & plan::kLanguageAxes) != 0) return std::nullopt;
+      task = up;
+    }
+    return task;
+  };
+  const auto ours = root(a);
+  return ours && ours == root(b);
 }
 
 std::vector<double> joint_starts(const plan::Plan& plan, const plan::TaskRecord& task) {
@@ -270,7 +328,7 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   const bool scene_moves =
       !is_same("robot") ||
       (here.surface_z == there.surface_z ? !is_same("scene")
-                                         : !same_but_for_height(hasher, here, there)) ||
+                                         : !same_but_for_height(plan, hasher, here, there)) ||
       hasher.judge(a) != hasher.judge(elsewhere);  // another law or rate
   const auto moves = [&](plan::Axis axis) {
     switch (axis) {
@@ -323,19 +381,19 @@ Difference difference(const plan::Plan& plan, std::uint32_t first, std::uint32_t
   Difference found;
   for (const plan::AxisInfo& info : plan::kAxisTable)
     found.axes |= moves(info.axis) ? bit(info.axis) : 0;
-  found.language = frame_of(plan, a) != frame_of(plan, b) || !same_later(plan, first, second);
+  // Words that follow what fills a role ("both cubes") are other words in one frame.
+  found.language = !same_words_since(plan, first, second) &&
+                   (frame_of(plan, a) != frame_of(plan, b) || !same_later(plan, first, second));
   return found;
 }
 
 std::vector<std::string> axes_between(const plan::Plan& plan, std::uint32_t a, std::uint32_t b) {
+  if (plan.tasks()[a].baseline == b) return plan::moved_axes(plan.tables(), plan.tasks()[a]);
+  if (plan.tasks()[b].baseline == a) return plan::moved_axes(plan.tables(), plan.tasks()[b]);
   const Difference found = difference(plan, a, b);
-  std::optional<std::uint32_t> declared;
-  if (plan.tasks()[a].baseline == b) declared = plan.tasks()[a].axes;
-  if (plan.tasks()[b].baseline == a) declared = plan.tasks()[b].axes;
-  const std::uint32_t language = declared.value_or(0) & plan::kLanguageAxes;
-  std::vector<std::string> names = plan::axis_names_between(plan.tables(), found.axes | language,
-                                                            plan.tasks()[a], plan.tasks()[b]);
-  if (found.language && language == 0) names.emplace_back("language");
+  std::vector<std::string> names =
+      plan::axis_names_between(plan.tables(), found.axes, plan.tasks()[a], plan.tasks()[b]);
+  if (found.language) names.emplace_back("language");
   return names;
 }
 

@@ -22,8 +22,8 @@ struct Difference {
 };
 Difference difference(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
 
-// The same by name. Between a variant and its baseline the language axes are those the compiler
-// stored, between any other two tasks there is one word for them, "language".
+// The same by name. Between a variant and its baseline they are those that the compiler stored,
+// between any other two tasks there is one word for all of language, "language".
 std::vector<std::string> axes_between(const plan::Plan& plan, std::uint32_t a, std::uint32_t b);
 
 }  // namespace probe::inspect

@@ -20,6 +20,11 @@ Names stored(std::uint32_t axes) {
   return {names.begin(), names.end()};
 }
 
+// The same without the compiler's word.
+Names by_records(const plan::Plan& plan, std::uint32_t a, std::uint32_t b) {
+  return stored(difference(plan, a, b).axes);
+}
+
 // The plan of a text that uses the suites and the standard library.
 plan::Plan compiled(const std::string& text) {
   const std::string root = VLAPROBE_SOURCE_DIR;
@@ -51,6 +56,8 @@ TEST_CASE("the records of a variant and its baseline say the same axes as the co
     INFO(plan.text(task.name));
     CHECK(axes_between(plan, t, task.baseline) == stored(task.axes));
     CHECK(axes_between(plan, task.baseline, t) == stored(task.axes));
+    CHECK(by_records(plan, t, task.baseline) == stored(task.axes & ~plan::kLanguageAxes));
+    CHECK(by_records(plan, task.baseline, t) == stored(task.axes & ~plan::kLanguageAxes));
     CHECK(difference(plan, t, task.baseline).language == ((task.axes & plan::kLanguageAxes) != 0));
   }
   CHECK(pairs == 6);
@@ -95,6 +102,7 @@ variants of carrots { spoons { source spoon }; covered { distractors towel }; st
   for (const char* name : {"spoons", "covered", "straight"}) {
     const plan::TaskRecord& task = shaken.tasks()[*shaken.find_task(name)];
     CHECK(axes_between(shaken, *shaken.find_task(name), base) == stored(task.axes));
+    CHECK(by_records(shaken, *shaken.find_task(name), base) == stored(task.axes));
   }
 }
 
@@ -122,6 +130,7 @@ suite laws { tasks { panda_carrot_on_plate, stiff }; seeds 1 }
   CHECK(stored(plan.tasks()[stiff].axes) == Names{"scene"});
   CHECK(axes_between(plan, base, stiff) == Names{"scene"});
   CHECK(axes_between(plan, stiff, base) == Names{"scene"});
+  CHECK(by_records(plan, base, stiff) == Names{"scene"});
 }
 
 TEST_CASE("a copy of a fixture whose joint starts elsewhere differs by the fixture alone") {
@@ -138,4 +147,50 @@ suite begun_suite { tasks { shut, begun }; seeds 1 }
   const std::uint32_t base = *plan.find_task("shut"), begun = *plan.find_task("begun");
   CHECK(stored(plan.tasks()[begun].axes) == Names{"fixture"});
   CHECK(axes_between(plan, base, begun) == Names{"fixture"});
+  CHECK(by_records(plan, base, begun) == Names{"fixture"});
+}
+
+TEST_CASE("a surface of another height takes the fixtures that stand on it with it") {
+  const plan::Plan plan = compiled(R"(
+use "suite/kitchen.probe"
+scene high like counter { surface 94cm area (-42cm, -26cm) .. (26cm, 30cm) }
+variant higher of carrot_in_the_drawer { scene high }
+task as_high like carrot_in_the_drawer { scene high }
+suite heights { tasks { carrot_in_the_drawer, higher, as_high }; seeds 1 }
+)");
+  const std::uint32_t base = *plan.find_task("carrot_in_the_drawer");
+  const std::uint32_t higher = *plan.find_task("higher"), alike = *plan.find_task("as_high");
+  CHECK(stored(plan.tasks()[higher].axes) == Names{"scene.geometry"});
+  CHECK(axes_between(plan, base, higher) == Names{"scene.geometry"});
+  CHECK(by_records(plan, base, higher) == Names{"scene.geometry"});
+  CHECK(axes_between(plan, base, alike) == Names{"scene.geometry"});
+  CHECK(axes_between(plan, alike, higher).empty());
+}
+
+TEST_CASE("words that follow what fills a role are the same words") {
+  const plan::Plan plan = compiled(R"(
+use "suite/panda.probe"
+role goods: set
+layout sets like grid_24 {
+  cells corners = grid 2 x 2 at (-14cm, 0cm) spread (7.5cm, 7.5cm)
+  place target, goods in distinct corners
+  orient by rest
+  expect 48 episodes
+}
+metrics all_there { success = at end (all g in goods: height(g) > height(target)) }
+task two like panda_carrot_on_plate {
+  layout sets; source none; goods green_cube, yellow_cube; target plate; metrics all_there
+  say "put {both goods} on {the target}"
+}
+variant others of two { goods green_cube, carrot }
+variant third of two { goods carrot, yellow_cube }
+variant said of two { say "move {both goods} onto {the target}" }
+suite sets_suite { tasks { two, others, third, said }; seeds 1 }
+)");
+  const std::uint32_t base = *plan.find_task("two");
+  const std::uint32_t others = *plan.find_task("others"), third = *plan.find_task("third");
+  CHECK(plan.text(plan.tasks()[base].prompt) != plan.text(plan.tasks()[others].prompt));
+  CHECK(axes_between(plan, base, others) == Names{"object.goods"});
+  CHECK(axes_between(plan, others, third) == Names{"object.goods"});
+  CHECK(axes_between(plan, others, *plan.find_task("said")) == Names{"object.goods", "language"});
 }
