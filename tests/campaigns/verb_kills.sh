@@ -52,9 +52,9 @@ look() { # VERB OUTPUT: what a kill left is read
       wrong "$1" "what looks like a dataset does not hold" ;;
   esac
 }
-moment() { # seconds, up to $1 milliseconds
+wait_up_to() { # MILLISECONDS: a moment of them, drawn in this shell: others are seeded anew
   local at=$((RANDOM % $1))
-  printf "%d.%03d" $((at / 1000)) $((at % 1000))
+  sleep "$(printf "%d.%03d" $((at / 1000)) $((at % 1000)))"
 }
 
 "$vlaprobe" build "$here/suite/intact.probe" -o suite.plan >/dev/null
@@ -76,7 +76,7 @@ for ((kill = 1; kill <= kills; ++kill)); do
   verb=${verbs[kill % ${#verbs[@]}]}
   (start "$verb" out) >log 2>&1 &
   victim=$!
-  sleep "$(moment "${takes[$verb]}")"
+  wait_up_to "${takes[$verb]}"
   if kill -9 "$victim" 2>/dev/null; then killed=$((killed + 1)); fi
   wait "$victim" 2>/dev/null || true
   look "$verb" out
