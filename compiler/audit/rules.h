@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "compiler/audit/stage.h"
+#include "compiler/audit/fixture_starts.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 

@@ -1,18 +1,13 @@
 // What begins and stands otherwise than it looks: objects that fall onto one another, parts of
-// fixtures that are drawn and cannot be touched; and what begins in such parts.
+// fixtures that are drawn and cannot be touched.
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "compiler/emit/compile.h"
 #include "runtime/plan/plan.h"
-#include "runtime/robot/kinematics.h"
-#include "runtime/robot/urdf.h"
-#include "runtime/vm/made_up.h"
 
 namespace probe::audit {
 
@@ -30,29 +25,5 @@ Falls falls_in(const plan::Plan& plan, std::uint32_t task);
 // of it. Links with meshes are left out: their extents are not at hand here.
 std::vector<std::string> unfelt_in(const Compilation& compilation, const plan::Plan& plan,
                                    std::uint32_t fixture);
-
-// Where objects begin in fixtures with joints, and in their parts.
-class FixtureStarts {
- public:
-  // Both must live as long.
-  FixtureStarts(const Compilation& compilation, const plan::Plan& plan)
-      : compilation_(compilation), plan_(plan) {}
-
-  // Of one start of a task: the objects whose middle is in a region of a part as joints begin
-  // there.
-  std::vector<vm::BegunIn> of(std::uint32_t task, std::uint32_t start);
-
- private:
-  struct Model {
-    robot::RobotModel model;
-    robot::Tree tree;
-  };
-  const std::optional<Model>& model_of(std::uint32_t fixture);
-  std::vector<std::optional<Pose>> owners(std::uint32_t task, std::uint32_t start);
-
-  const Compilation& compilation_;
-  const plan::Plan& plan_;
-  std::map<std::uint32_t, std::optional<Model>> models_;
-};
 
 }  // namespace probe::audit
