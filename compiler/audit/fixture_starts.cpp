@@ -1,6 +1,5 @@
 #include "compiler/audit/fixture_starts.h"
 
-#include <cmath>
 #include <span>
 #include <string>
 
@@ -18,12 +17,8 @@ Vec3 middle_of(const plan::Plan& plan, const plan::PlacementRecord& placement) {
 }
 
 bool is_within(const plan::TurnedBox& box, const Vec3& at) {
-  const auto axes = plan::axes_of(box);
-  const Vec3 off = at - to_vec(box.middle);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (std::abs(off.dot(to_vec(axes[axis]))) > box.half[axis]) return false;
-  }
-  return true;
+  const Vec3 off = Pose{to_vec(box.middle), to_quat(box.rotation)}.inverse().apply(at);
+  return (off.cwiseAbs().array() <= to_vec(box.half).array()).all();
 }
 
 }  // namespace

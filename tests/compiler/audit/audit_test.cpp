@@ -369,6 +369,28 @@ TEST_CASE("a thing that begins in the drawer that it shall be put into is found"
   CHECK(!with("on carrot", "12cm"));
 }
 
+TEST_CASE("a thing that begins in a region that is turned is found off its middle, too") {
+  const Audited audited = audit_text(R"(
+use "kitchen.probe"
+fixture slanted like cabinet {
+  region inside_top of top_drawer box (-9cm, -2.2cm, -3cm) .. (9cm, 2.2cm, 2cm) at (1cm, 0cm, 0cm) yaw 45deg
+}
+scene with_slot like counter { fixture slanted, stove }
+layout here {
+  place source, helper in slanted.inside_top
+  drop 10cm settle 0.5s
+}
+metrics storing { success = at end lies_in(source, target) }
+task store_it like in_kitchen {
+  scene with_slot; source green_cube; helper yellow_cube; target slanted.inside_top
+  layout here; metrics storing; start slanted.top 12cm
+  say "put {the source} in {the target} beside {the helper}"
+}
+suite own { tasks { store_it }; seeds 0 }
+)");
+  CHECK(audited.find(Kind::kHoldsAtStart, "store_it") != nullptr);
+}
+
 TEST_CASE("a rule that passes too much in another start than the first is found, with that start") {
   // The middle of a can that stands beside the plate is 2.8 cm above that of the plate, of one that
   // lies 1.4 cm.
