@@ -75,6 +75,11 @@ std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2&
   return least;
 }
 
+scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
+  return moved(scene::upright_solid(Vec3(object.box_min.data()), Vec3(object.box_max.data())),
+               {origin, Quat(turn)});
+}
+
 double lowest(const Object& object, const Mat3& turn) {
   // Along each of the world's axes every side of the box adds its own least: no corner is needed.
   const Vec3 rise = turn.row(2).transpose();

@@ -1,5 +1,5 @@
-// The shadow of an oriented box on the surface, which is what overlap and edges are judged by:
-// collision hulls are not known to the compiler.
+// The oriented box of an object, which stands for it as collision hulls are not known to the
+// compiler, and its shadow on the surface, which is what overlap and edges are judged by.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 #include "compiler/model/model.h"
 #include "runtime/base/geometry.h"
+#include "runtime/scene/solid.h"
 
 namespace probe::sema {
 
@@ -40,6 +41,8 @@ double overlap(const Footprint& a, const Footprint& b);
 // nothing when they stand on the same cell.
 std::optional<double> growth(const Footprint& a, const Footprint& b, const Vec2& cells);
 
+// The box of an object, turned, with its model's origin at `origin`.
+scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
 // How far the lowest corner of a turned box lies above its model's origin (m, mostly negative).
 double lowest(const Object& object, const Mat3& turn);
 // The height of a turned box (m).

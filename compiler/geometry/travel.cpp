@@ -50,11 +50,6 @@ std::vector<std::size_t> carriers_of(const Fixture& fixture, int link) {
 
 }  // namespace
 
-scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin) {
-  return moved(scene::upright_solid(Vec3(object.box_min.data()), Vec3(object.box_max.data())),
-               {origin, Quat(turn)});
-}
-
 Travel::Travel(const Pose& place, const Fixture& fixture, robot::Tree tree)
     : fixture_(&fixture), tree_(std::move(tree)), base_(place) {}
 

@@ -17,9 +17,6 @@
 
 namespace probe::sema {
 
-// The box of an object, turned, with its model's origin at `origin`.
-scene::Solid solid(const Object& object, const Mat3& turn, const Vec3& origin);
-
 class Travel {
  public:
   // Of a fixture that stands in the scene. Reads the collision meshes that the URDF names; one that
