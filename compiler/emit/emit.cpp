@@ -19,7 +19,6 @@ Result<std::vector<std::byte>> Emitter::run(const std::vector<FileId>& files) {
   add_assets();
   add_sets();
   add_suites();
-  writer_.fill_ids();
   if (!check_language_only(chosen) || !options_.write) return std::vector<std::byte>{};
   return writer_.finish({.identity = options_.proves});
 }
