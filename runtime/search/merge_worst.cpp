@@ -93,6 +93,11 @@ Json joined_worst(std::span<const WorstShard> shards) {
     one["sentence"] = renumbered(one.value("sentence", ""), cases.size() + 1);
     cases.push_back(std::move(one));
   }
+  if (const int invalid = whole(joined, "invalid"); invalid > 0)
+    lines.push_back(
+        fmt::format("{} of {} trials are invalid and left out (`search show` of each shard "
+                    "says its first)",
+                    invalid, whole(joined, "trials")));
   for (const std::string& line : worst_lines(cases, own, whole(joined, "trials")))
     lines.push_back(line);
   if (own.n > 0) {

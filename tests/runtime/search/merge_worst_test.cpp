@@ -62,6 +62,18 @@ TEST_CASE("shards that found nothing, or whose task fails by itself, say so toge
   CHECK(joined_worst(shards).at("lines")[0].text().starts_with("the task itself fails in 60 of 60"));
 }
 
+TEST_CASE("trials that are invalid in some shards are told of all") {
+  std::vector<WorstShard> shards;
+  for (const char* const shard : {"1/2", "2/2"}) {
+    Json findings = findings_of(shard, {case_of("a", 0.5, true)});
+    findings["invalid"] = shards.empty() ? 0 : 7;
+    shards.push_back(worst_shard("DIR", findings).value());
+  }
+  const Json joined = joined_worst(shards);
+  CHECK(joined.at("lines")[0].text().starts_with("7 of 1200 trials are invalid and left out"));
+  CHECK(joined.at("lines").size() == 2);
+}
+
 TEST_CASE("what is no finished shard is refused by its folder") {
   for (const char* const odd : {"", "2", "0/2", "3/2", "2/", "a/b"}) {
     CAPTURE(odd);
