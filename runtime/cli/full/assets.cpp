@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "runtime/assets/import.h"
 #include "runtime/assets/mujoco_folder.h"
@@ -38,15 +39,17 @@ int import_verb(AssetsArguments& arguments) {
   }
   auto imported = assets::import_data(arguments.options);
   if (!imported) return report(imported.failure());
-  std::size_t counts[5] = {};
+  std::map<assets::Verdict, std::size_t> counts;
   for (const assets::ImportLine& line : imported->lines) {
-    ++counts[static_cast<std::size_t>(line.verdict)];
+    ++counts[line.verdict];
     put("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
   }
-  const std::string own = counts[4] == 0 ? "" : fmt::format(", {} the suite's own", counts[4]);
+  using enum assets::Verdict;
+  const std::string own =
+      counts[kOwn] == 0 ? "" : fmt::format(", {} the suite's own", counts[kOwn]);
   say("{}: {} taken, {} odd, {} missing, {} filled in{}; {} files, {:.1f} MB\n",
-      arguments.options.to, counts[0], counts[1], counts[2], counts[3], own, imported->files,
-      static_cast<double>(imported->bytes) / 1e6);
+      arguments.options.to, counts[kTaken], counts[kOdd], counts[kMissing], counts[kFilled], own,
+      imported->files, static_cast<double>(imported->bytes) / 1e6);
   say("next: vlaprobe check suite/{}.probe --assets {}\n", arguments.suite, arguments.options.to);
   return kFine;
 }
