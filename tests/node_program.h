@@ -19,14 +19,9 @@ inline std::string check_types(const std::string& page) {
   const std::string packages = VLAPROBE_BINARY_DIR "/report_page/node_modules";
   const std::string command = "cd '" + packages + "' && node typescript/bin/tsc -p '" +
                               VLAPROBE_SOURCE_DIR "/" + page + "/tsconfig.json' --baseUrl '" +
-                              packages + "' 2>&1";
-  std::string words;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return "node is not there";
-  std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    words.append(buffer.data(), n);
-  return pclose(pipe) == 0 ? "" : "types are wrong: " + words;
+                              packages + "'";
+  const auto [status, words] = run_shell(command);
+  return status == 0 ? "" : "types are wrong: " + words;
 }
 
 }  // namespace probe::test

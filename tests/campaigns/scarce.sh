@@ -24,7 +24,7 @@ rows "$work/calm" >"$work/calm.rows"
 "$vlaprobe" run "${asked[@]}" --shard 1/2 -o "$work/half-1" >>"$work/log" 2>&1
 "$vlaprobe" run "${asked[@]}" --shard 2/2 -o "$work/half-2" >>"$work/log" 2>&1
 
-done=0 refused=0 found=0
+calls=0 refused=0 found=0
 finding() { # WHAT
   found=$((found + 1))
   echo "FOUND: $1"
@@ -35,7 +35,7 @@ suffers() {
   local name=$1 status=0
   shift
   timeout -k 5 60 "$@" >"$work/said" 2>&1 || status=$?
-  done=$((done + 1))
+  calls=$((calls + 1))
   [ "$status" = 0 ] && return
   refused=$((refused + 1))
   # The loader's own sentence, before there is a program.
@@ -52,7 +52,8 @@ recovers() {
   cmp -s "$work/calm.rows" "$work/rows" || { diff "$work/calm.rows" "$work/rows" >"$work/said" || true; finding "$name: other rows than without it"; }
   [ -z "$(find "$folder" -name '*.tmp')" ] || finding "$name: unfinished files stay"
 }
-between() { echo $(($1 + RANDOM % ($2 - $1))); } # LOW HIGH
+# between NAME LOW HIGH: draws it. What is drawn within $(...) is none of the seed's draws.
+between() { printf -v "$1" %d $(($2 + RANDOM % ($3 - $2))); }
 limited() { # NAME FLAG VALUE: a run under one limit of the shell's
   rm -rf "$work/limited"
   suffers "$1 $3" bash -c "ulimit -$2 $3; exec \"\$@\"" - "$vlaprobe" run "${asked[@]}" -o "$work/limited"
@@ -77,15 +78,18 @@ disk size=1m 2>/dev/null || { can_mount=; echo "skipped: disks that are full or 
 command -v faketime >/dev/null || echo "skipped: clocks that jump, which need faketime"
 
 for ((round = 0; round < rounds; ++round)); do
-  few=$(between 8 60)
+  between few 8 60
   limited "handles" n "$few"
   reading "handles" n "$few"
-  little=$(between 60000 900000) # KiB
+  between little 60000 900000 # KiB
   limited "memory" v "$little"
   reading "memory" v "$little"
-  limited "KiB in a file" f "$(between 1 400)"
+  between small 1 400
+  limited "KiB in a file" f "$small"
   if [ "$can_mount" ]; then
-    for room in "size=$(between 40 2000)k" "size=1g,nr_inodes=$(between 3 40)"; do
+    between room_kib 40 2000
+    between names 3 40
+    for room in "size=${room_kib}k" "size=1g,nr_inodes=$names"; do
       disk "$room"
       suffers "a disk of $room" "$vlaprobe" run "${asked[@]}" -o "$mounted/run"
       mount -o remount,size=1g,nr_inodes=100000 "$mounted"
@@ -94,7 +98,8 @@ for ((round = 0; round < rounds; ++round)); do
     # Begun, and gone on with where nothing can be written.
     disk size=1g
     "$vlaprobe" run "${asked[@]}" -o "$mounted/run" >/dev/null 2>&1 &
-    sleep "0.$(between 300 900)"
+    between moment 300 900 # ms
+    sleep "0.$moment"
     kill -9 $! 2>/dev/null || true
     wait $! 2>/dev/null || true
     mount -o remount,ro "$mounted"
@@ -105,7 +110,13 @@ for ((round = 0; round < rounds; ++round)); do
   if command -v faketime >/dev/null; then
     rm -rf "$work/jumped"
     echo "+0" >"$work/clock"
-    (for _ in 1 2 3 4 5 6; do sleep 0.15; echo "$((RANDOM % 2 ? 1 : -1))$(between 10 99)d" | sed 's/^1/+/; s/^-1/-/' >"$work/clock"; done) &
+    jumps=() ways=(+ -)
+    for _ in 1 2 3 4 5 6; do
+      between days 10 99
+      between way 0 2
+      jumps+=("${ways[way]}${days}d")
+    done
+    (for jump in "${jumps[@]}"; do sleep 0.15; echo "$jump" >"$work/clock"; done) &
     suffers "a clock that jumps" env FAKETIME_TIMESTAMP_FILE="$work/clock" FAKETIME_NO_CACHE=1 DONT_FAKE_MONOTONIC=1 \
       LD_PRELOAD="$(ls /usr/lib/*/faketime/libfaketimeMT.so.1)" "$vlaprobe" run "${asked[@]}" -o "$work/jumped"
     wait
@@ -113,10 +124,11 @@ for ((round = 0; round < rounds; ++round)); do
   fi
   rm -rf "$work/two"
   "$vlaprobe" run "${asked[@]}" -o "$work/two" >"$work/other" 2>&1 &
-  sleep "0.$(between 100 600)"
+  between moment 100 600 # ms
+  sleep "0.$moment"
   suffers "a second writer" "$vlaprobe" run "${asked[@]}" -o "$work/two"
   wait $! || { cp "$work/other" "$work/said"; finding "the first of two writers did not end well"; }
   recovers "two writers" "$work/two"
 done
-echo "$done calls, $refused refused, $found findings"
+echo "$calls calls, $refused refused, $found findings"
 [ "$found" = 0 ]

@@ -1,11 +1,7 @@
-#include <doctest/doctest.h>
+#include "tests/campaigns/check_campaign.h"
 
-#include "tests/shell_program.h"
+using namespace probe::test;
 
 TEST_CASE("what lacks handles, memory, room or time says so, and goes on where it does not") {
-  const auto [status, said] = probe::test::run_shell(
-      "bash '" VLAPROBE_SOURCE_DIR "/tests/campaigns/scarce.sh' 1 '" VLAPROBE_BINARY_DIR
-      "/vlaprobe'");
-  CHECK_MESSAGE(status == 0, said);
-  CHECK_MESSAGE(said.find(" 0 findings") != said.npos, said);
+  check_campaign(one_round_of("scarce.sh"), {" 0 findings"});
 }
