@@ -372,36 +372,45 @@ TEST_CASE(
   CHECK(mended.lines == whole.lines);
 }
 
-// At some pictures it asks for a step of two metres, whenever it sees them.
+// It asks for a step of two metres, which nobody can do, whenever it sees one of some pictures or
+// wherever it is asked; not where a server is looked at before.
 class Wild final : public servers::ServedPolicy {
  public:
+  enum class When : std::uint8_t { kSomePictures, kAlways };
+  explicit Wild(When when) : when_(when) {}
   void reset() override {}
   Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
-    const auto bytes = std::as_bytes(std::span(asked.picture.bytes));
     auto actions = digest_->answer(asked, count);
-    const Sha256 hash = sha256(bytes);
-    if (actions && hash.bytes[0] == 0 && hash.bytes[1] < 64 &&
-        !servers::is_known_observation(asked.picture.bytes, asked.words))
+    const Sha256 hash = sha256(std::as_bytes(std::span(asked.picture.bytes)));
+    const bool is_one = when_ == When::kAlways || (hash.bytes[0] == 0 && hash.bytes[1] < 64);
+    if (actions && is_one && !servers::is_known_observation(asked.picture.bytes, asked.words))
       actions->front()[0] = 2;
     return actions;
   }
 
  private:
+  When when_;
   std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest().value()();
 };
 
-TEST_CASE("what a policy asks for in some episodes and nobody can do leaves these out, each time") {
-  Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
+// A server of it that the search asks from now on, as long as what is returned is there.
+std::unique_ptr<wire::Listener> serve_wild(Search& search, Wild::When when) {
   servers::ServeOptions served;
-  served.policy = [] { return std::make_unique<Wild>(); };
-  const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
+  served.policy = [when] { return std::make_unique<Wild>(when); };
+  auto listener = servers::serve(servers::Protocol::kOpenpi, served);
   REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
   search.options.proves = false;
-  search.options.run.policy = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
-                              servers::options_for_served(servers::Protocol::kOpenpi, served);
+  search.options.run.policy = servers::address_of_served(servers::Protocol::kOpenpi, served,
+                                                         "127.0.0.1:" + (*listener)->port());
   search.options.run.name = "wild";
   search.options.run.retries = 0;
   search.options.run.give_up_after = 0;
+  return std::move(listener).value();
+}
+
+TEST_CASE("what a policy asks for in some episodes and nobody can do leaves these out, each time") {
+  Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
+  const auto server = serve_wild(search, Wild::When::kSomePictures);
   const SearchSummary found = search.find();
   CHECK(found.left_out > 0);
   CHECK(found.invalid > 0);
@@ -412,34 +421,10 @@ TEST_CASE("what a policy asks for in some episodes and nobody can do leaves thes
   CHECK(again.findings == found.findings);
 }
 
-// It asks for what nobody can do wherever a server is not looked at before it is asked.
-class Impossible final : public servers::ServedPolicy {
- public:
-  void reset() override {}
-  Result<std::vector<policy::Action>> answer(const servers::Asked& asked, int count) override {
-    auto actions = digest_->answer(asked, count);
-    if (actions && !servers::is_known_observation(asked.picture.bytes, asked.words))
-      actions->front()[0] = 2;
-    return actions;
-  }
-
- private:
-  std::unique_ptr<servers::ServedPolicy> digest_ = servers::serve_digest().value()();
-};
-
 TEST_CASE(
     "of a policy that spoils what it is asked for nothing is said, least of all what is fair") {
   Search search(Method::kBoundary, "sensor noise 0 .. 0.1", "");
-  servers::ServeOptions served;
-  served.policy = [] { return std::make_unique<Impossible>(); };
-  const auto listener = servers::serve(servers::Protocol::kOpenpi, served);
-  REQUIRE_MESSAGE(listener.ok(), to_text(listener.failure()));
-  search.options.proves = false;
-  search.options.run.policy = "openpi://127.0.0.1:" + (*listener)->port() + "?" +
-                              servers::options_for_served(servers::Protocol::kOpenpi, served);
-  search.options.run.name = "impossible";
-  search.options.run.retries = 0;
-  search.options.run.give_up_after = 0;
+  const auto server = serve_wild(search, Wild::When::kAlways);
   const Failure failure = search.refused();
   CHECK(failure.code == Fault::kPolicy);
   CHECK_MESSAGE(failure.message.find("Of such a policy nothing is said") != std::string::npos,
