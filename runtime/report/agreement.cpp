@@ -4,59 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "runtime/base/percent.h"
-#include "runtime/base/printable.h"
-#include "runtime/report/csv_cells.h"
 
 namespace probe::report {
 namespace {
 
-constexpr std::size_t kLongest = 200;         // of a cell in messages, bytes
-constexpr std::size_t kMostFigures = 10'000;  // far more than any paper; work grows with its square
-constexpr std::size_t kFewest = 3;            // policies: two always lie on a line
-
-enum Column : std::size_t {
-  kSource,
-  kProtocol,
-  kMetric,
-  kPolicy,
-  kTask,
-  kSubtask,
-  kValue,
-  kNeeded
-};
-constexpr std::array<std::string_view, kNeeded> kColumns = {
-    "source", "protocol", "metric", "policy", "task", "subtask", "value"};
-constexpr std::array<std::string_view, 2> kTrials = {"trials_per_published_protocol", "trials"};
-
-std::optional<double> number_of(std::string_view text) {
-  double value = 0;
-  const auto [end, error] =
-      std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    return std::nullopt;
-  return value;
-}
-
-std::string_view first_line(std::string_view csv) {
-  if (csv.starts_with("\xef\xbb\xbf")) csv.remove_prefix(3);
-  return trimmed(csv.substr(0, csv.find('\n')));
-}
-
-bool has_open_quote(std::string_view line) { return std::ranges::count(line, '"') % 2 != 0; }
-
-bool is_rate(const PublishedFigure& figure) { return figure.metric == "success_rate"; }
-
-// What the column of a figure or of a row of agreements is called: "drawer_open".
-std::string column_of(const auto& of) {
-  if (of.subtask.empty() || of.subtask == "average") return of.task;
-  return of.task + "_" + of.subtask;
-}
+constexpr std::size_t kFewest = 3;  // policies: two always lie on a line
 
 stats::MeasuredRate measured(const PublishedFigure& figure) {
   return {figure.value, figure.trials};
@@ -77,11 +34,6 @@ const PublishedFigure* real_of(const RateTable& table, const PublishedFigure& si
   return found;
 }
 
-// "RT-1-X, visual_matching, drawer_open"
-std::string name_of(const PublishedFigure& figure) {
-  return fmt::format("{}, {}, {}", figure.policy, figure.protocol, column_of(figure));
-}
-
 std::string interval_text(const std::optional<stats::Interval>& interval) {
   return interval ? fmt::format("{:.3f} .. {:.3f}", interval->low, interval->high) : "-";
 }
@@ -89,114 +41,6 @@ std::string interval_text(const std::optional<stats::Interval>& interval) {
 Json interval_json(const std::optional<stats::Interval>& interval) {
   return interval ? Json{interval->low, interval->high} : Json();
 }
-
-}  // namespace
-
-Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file) {
-  RateTable table{file, {}, {}};
-  const std::vector<std::string> header = csv_cells(first_line(csv));
-  if (first_line(csv).find('\r') != std::string_view::npos) {
-    return Failure{Fault::kUsage, "lines end in a carriage return alone: save it with line feeds",
-                   file + ":1"};
-  }
-  const auto refuse_twice = [&](std::string_view column) -> Status {
-    if (std::ranges::count(header, column) < 2) return {};
-    return Failure{Fault::kUsage, fmt::format("the column `{}` is here twice", column),
-                   file + ":1"};
-  };
-  std::array<std::size_t, kNeeded> at{};
-  for (std::size_t c = 0; c < kNeeded; ++c) {
-    const auto found = std::ranges::find(header, kColumns[c]);
-    if (found == header.end()) {
-      return Failure{
-          Fault::kUsage,
-          fmt::format("a table of rates has the columns source, protocol, metric, policy, "
-                      "task, subtask and value, and no `{}` is here",
-                      kColumns[c]),
-          file + ":1"};
-    }
-    PROBE_TRY(refuse_twice(kColumns[c]));
-    at[c] = static_cast<std::size_t>(found - header.begin());
-  }
-  std::optional<std::size_t> trials;
-  for (const std::string_view name : kTrials) {
-    PROBE_TRY(refuse_twice(name));
-    const auto found = std::ranges::find(header, name);
-    if (!trials && found != header.end()) trials = static_cast<std::size_t>(found - header.begin());
-  }
-  std::map<std::array<std::string, kValue>, std::size_t> lines;  // of the figures
-  std::size_t number = 0;
-  while (!csv.empty()) {
-    const std::size_t end = std::min(csv.find('\n'), csv.size());
-    const std::string_view line = trimmed(csv.substr(0, end));
-    csv.remove_prefix(std::min(end + 1, csv.size()));
-    if (++number == 1 || line.empty() || line[0] == '#') continue;
-    const std::string where = fmt::format("{}:{}", file, number);
-    if (has_open_quote(line))
-      return Failure{Fault::kUsage, "a quote is not closed on its line", where};
-    const std::vector<std::string> cells = csv_cells(line);
-    if (cells.size() != header.size()) {
-      return Failure{
-          Fault::kUsage,
-          fmt::format("{} cells where the first line has {}", cells.size(), header.size()), where};
-    }
-    PublishedFigure figure;
-    std::string* const to[] = {&figure.source, &figure.protocol, &figure.metric,
-                               &figure.policy, &figure.task,     &figure.subtask};
-    std::array<std::string, kValue> key;
-    for (std::size_t c = 0; c < kValue; ++c) {
-      key[c] = cells[at[c]];
-      *to[c] = printable(key[c], kLongest);
-      if (key[c].empty() && c != kSource && c != kSubtask)
-        return Failure{Fault::kUsage, fmt::format("a row has no {}", kColumns[c]), where};
-    }
-    const std::string& written = cells[at[kValue]];
-    const auto value = number_of(written);
-    if (!value) {
-      table.unread.push_back(fmt::format("{}: {}: `{}` is no number", where, name_of(figure),
-                                         printable(written, kLongest)));
-      continue;
-    }
-    if (is_rate(figure) && !(*value >= 0 && *value <= 1)) {
-      return Failure{Fault::kUsage,
-                     fmt::format("`{}` is no rate from 0 to 1", printable(written, kLongest)),
-                     where};
-    }
-    figure.value = *value;
-    constexpr std::size_t kMostDigits = 15;  // a double has no more
-    if (written.size() > kMostDigits + 5 || table.figures.size() >= kMostFigures) {
-      return Failure{Fault::kUsage,
-                     written.size() > kMostDigits + 5
-                         ? fmt::format("`{}` has more digits than a number holds",
-                                       printable(written, kLongest))
-                         : fmt::format("more than {} figures", kMostFigures),
-                     where};
-    }
-    const std::size_t point = written.find('.');
-    figure.decimals = point == std::string::npos ? 0 : static_cast<int>(written.size() - point - 1);
-    figure.line = number;
-    if (const auto [first, is_new] = lines.try_emplace(std::move(key), number); !is_new) {
-      return Failure{Fault::kUsage,
-                     fmt::format("{}: {} of this source is on line {} already", name_of(figure),
-                                 figure.metric, first->second),
-                     where};
-    }
-    if (trials && !cells[*trials].empty()) {
-      const auto count = number_of(cells[*trials]);
-      if (!count || *count < 1 || *count > 1e9 || *count != std::floor(*count)) {
-        return Failure{
-            Fault::kUsage,
-            fmt::format("`{}` is no number of trials", printable(cells[*trials], kLongest)), where};
-      }
-      figure.trials = *count;
-    }
-    table.figures.push_back(std::move(figure));
-  }
-  if (table.figures.empty()) return Failure{Fault::kUsage, "holds no row of figures", file};
-  return table;
-}
-
-namespace {
 
 struct RunRate {
   stats::Count count;

@@ -3,42 +3,19 @@
 // published rates, one a row, and for runs beside it.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "runtime/base/json.h"
-#include "runtime/base/result.h"
 #include "runtime/report/benchmark.h"
+#include "runtime/report/rate_table.h"
 #include "runtime/stats/rank_agreement.h"
 
 namespace probe::report {
 
-// One row of the table, a rate from 0 to 1 or a figure of agreement.
-struct PublishedFigure {
-  std::string source, protocol, metric, policy, task, subtask;
-  double value = 0;
-  int decimals = 0;   // digits behind the point
-  double trials = 0;  // of which it is the rate; 0: not said
-  std::size_t line = 0;
-};
-
-struct RateTable {
-  std::string file;
-  std::vector<PublishedFigure> figures;  // in the order of the file
-  std::vector<std::string> unread;       // rows whose value is no number, such as a range
-};
-
-// A CSV of one figure a row, with the columns source, protocol, metric, policy, task, subtask and
-// value in any order. `trials_per_published_protocol` (or `trials`) is read where it is there,
-// other columns are passed over. Fails (kUsage, where = file:line) on a column that is missing or
-// there twice, a row of another length, a line break in a cell, a success_rate that is not from 0
-// to 1, and a figure that the same source gives twice.
-Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file);
-
-// The protocol of real rates, and what runs that are added are called.
-inline constexpr std::string_view kReal = "real", kTheseRuns = "these runs";
+// What runs that are added are called, as source and protocol.
+inline constexpr std::string_view kTheseRuns = "these runs";
 
 // Appends the runs' rates of success, of tasks in sets that are called as columns are: task and
 // subtask joined by `_`, the task alone for the subtask `average`. Only of policies that the table

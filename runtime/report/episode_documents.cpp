@@ -134,7 +134,7 @@ struct Reading {
   std::string problem;
 };
 
-double shown(const TimelineJoint& joint, double position) {
+double in_shown_unit(const TimelineJoint& joint, double position) {
   const double value = position * (joint.slides ? 100 : 180 / std::numbers::pi);
   return std::nearbyint(value * 10) / 10 + 0.0;  // never a negative zero
 }
@@ -152,8 +152,8 @@ std::vector<TimelineJoint> joints_of(const plan::Plan& plan, const plan::TaskRec
 Json joints_json(const std::vector<TimelineJoint>& joints) {
   Json list = Json::array();
   for (const TimelineJoint& joint : joints) {
-    list.push_back({joint.name, joint.slides ? "cm" : "deg", shown(joint, joint.lower),
-                    shown(joint, joint.upper)});
+    list.push_back({joint.name, joint.slides ? "cm" : "deg", in_shown_unit(joint, joint.lower),
+                    in_shown_unit(joint, joint.upper)});
   }
   return list;
 }
@@ -239,7 +239,7 @@ std::string encode_timeline(const store::Trace& trace, std::span<const std::stri
     double low = 0, high = 0;
     for (std::size_t i = 0; i < trace.steps.size(); i += kEvery) {
       const double at =
-          shown(joints[j], trace.steps[i].sample.joints[all - joints.size() + j].position);
+          in_shown_unit(joints[j], trace.steps[i].sample.joints[all - joints.size() + j].position);
       low = i == 0 ? at : std::min(low, at);
       high = i == 0 ? at : std::max(high, at);
       values += fmt::format("{}{:.1f}", values.empty() ? "" : ",", at);
