@@ -41,9 +41,9 @@ for row in json.load(sys.stdin):
     row.pop("trace")
     print(json.dumps(row, sort_keys=True))'
 }
-moment() { # seconds, from LOW to HIGH in milliseconds
+pause() { # LOW HIGH, in milliseconds: drawn here, as what is drawn within $(...) is none of the seed's draws
   local at=$(($1 + RANDOM % ($2 - $1)))
-  printf "%d.%03d" $((at / 1000)) $((at % 1000))
+  sleep "$(printf "%d.%03d" $((at / 1000)) $((at % 1000)))"
 }
 
 "$vlaprobe" build "$here/suite/intact.probe" -o "$dir/suite.plan" >/dev/null
@@ -61,16 +61,16 @@ for ((kill = 1; kill <= kills; ++kill)); do
     client=$!
   fi
   if ((kill % 2)); then
-    sleep "$(moment 300 2500)"
+    pause 300 2500
     if kill -9 "$client" 2>/dev/null; then killed_client=$((killed_client + 1)); else idle=$((idle + 1)); fi
     wait "$client" 2>/dev/null || true
     client=
   else
-    sleep "$(moment 500 1500)"
+    pause 500 1500
     kill -9 "$server"
     wait "$server" 2>/dev/null || true
     killed_server=$((killed_server + 1))
-    sleep "$(moment 0 700)"
+    pause 0 700
     start_server
   fi
 done
