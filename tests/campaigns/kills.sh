@@ -12,8 +12,8 @@ dir=$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-kills-XXXXXX")
 server=
 client=
 stop() {
-  [ -n "$client" ] && kill -9 "$client" 2>/dev/null
-  [ -n "$server" ] && kill -9 "$server" 2>/dev/null && wait "$server" 2>/dev/null
+  [ -z "$client" ] || kill -9 "$client" 2>/dev/null || true
+  [ -z "$server" ] || { kill -9 "$server" && wait "$server"; } 2>/dev/null || true
   rm -rf "$dir"
 }
 trap stop EXIT
