@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
 
 #include "compiler/define/telling.h"
+#include "compiler/model/same.h"
 #include "runtime/base/nouns.h"
 #include "runtime/base/utf8.h"
 
@@ -168,6 +170,48 @@ std::vector<Word> objects_in_order(const std::vector<Word>& words,
   return objects;
 }
 
+// Whether one says the other and a clause more, behind it or before: "put A in B", "put A in B and
+// close C".
+bool adds_clause(const std::vector<Word>& longer, const std::vector<Word>& shorter) {
+  constexpr auto kJoins =
+      std::to_array<std::string_view>({"and", "then", "before", "after", "afterwards"});
+  const auto joins = [&](const Word& word) {
+    return !word.is_object && std::ranges::find(kJoins, word.text) != kJoins.end();
+  };
+  if (shorter.empty() || longer.size() < shorter.size() + 2) return false;
+  const std::span all(longer);
+  const auto is_shorter = [&](std::span<const Word> words) {
+    return std::ranges::equal(words, shorter);
+  };
+  return (is_shorter(all.first(shorter.size())) && joins(all[shorter.size()])) ||
+         (is_shorter(all.last(shorter.size())) && joins(all[all.size() - shorter.size() - 1]));
+}
+
+bool names_more(const std::vector<Word>& a, const std::vector<Word>& b) {
+  return std::ranges::any_of(a, [&](const Word& word) {
+    return word.is_object && !word.is_other && std::ranges::find(b, word) == b.end();
+  });
+}
+
+bool same_success(const Model& model, const Task& a, const Task& b) {
+  const auto success = [](const Task& task) {
+    return std::ranges::find(task.judged, "success", &Metric::name);
+  };
+  const auto here = success(a), there = success(b);
+  if (here == a.judged.end() || there == b.judged.end()) return true;
+  return here->readout == there->readout && same_expression(model, here->expr, there->expr);
+}
+
+// Whether one asks for more than the other: success is another one, and one has a clause more, or
+// speaks of something that the other does not speak of.
+bool asks_for_more(const Model& model, const Task& a, const Task& b) {
+  if (a.say == b.say || same_success(model, a, b)) return false;
+  const std::vector<Word> here = words_of(model, a, Form::kPlain),
+                          there = words_of(model, b, Form::kPlain);
+  return adds_clause(here, there) || adds_clause(there, here) || names_more(here, there) ||
+         names_more(there, here);
+}
+
 // Two sequences that take their objects in another order.
 bool goes_the_other_way(const std::vector<Word>& a, const std::vector<Word>& b) {
   const auto is_sequence = [](const std::vector<Word>& words) {
@@ -272,7 +316,7 @@ bool asks_otherwise(const Model& model, const Task& a, const Task& b) {
     if (asks_otherwise(model, telling(a, i), telling(b, i))) return true;
   }
   if (model.templates[a.say].frame != model.templates[b.say].frame) return true;
-  return contradicts(model, a, b);
+  return contradicts(model, a, b) || asks_for_more(model, a, b);
 }
 
 bool contradicts(const Model& model, const Task& a, const Task& b) {

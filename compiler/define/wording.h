@@ -31,7 +31,9 @@ bool is_control(const Template& say);
 
 // Whether two instructions ask for different actions: their verb frames differ, or one says `left`
 // where the other says `right`, or the same words stand around other objects ("put A on B", "put B
-// on A"), or a sequence goes the other way ("first A, then B", "first B, then A").
+// on A"), or a sequence goes the other way ("first A, then B", "first B, then A"), or, where
+// success is another one, there is a clause more or something more is spoken of ("put A in B", "put
+// A in B and close C").
 bool asks_otherwise(const Model& model, const Task& a, const Task& b);
 
 // The same of words that are meant for one action: `left` for `right`, other objects, the other way

@@ -186,6 +186,24 @@ TEST_CASE("words that ask for something else are another action, not a paraphras
               "pick first {source}, then drop it onto {target}") == "language.paraphrase");
 }
 
+TEST_CASE("a clause more that another success is of is another action") {
+  const auto moved = [](const std::string& words, const std::string& success) {
+    // That success holds nothing to some of these words is another matter.
+    const auto a =
+        analyze_with_suite("metrics m like plain { success = at end (" + success +
+                           ") }\nvariant v of red_on_tray { say \"" + words + "\"; metrics m }");
+    return axes(a->task("v"));
+  };
+  const std::string higher = "height(source) > height(target) and height(target) > 1m";
+  CHECK(moved("put {source} on {the target} and lift {the target}", higher) ==
+        "language.action goal");
+  CHECK(moved("put {the target} up, then put {source} on {the target}", higher) ==
+        "language.action goal");
+  CHECK(moved("put {source} on {the target} and lift {the target}",
+              "height(source) > height(target)") == "language.paraphrase");
+  CHECK(moved("put {source} down on {the target}", higher) == "language.paraphrase goal");
+}
+
 TEST_CASE("a capital is no other action") {
   const auto a = analyze_with_suite(
       "variant loud of red_on_tray { say \"Put {source} on {the target}\" }\n"
