@@ -11,6 +11,7 @@
 #include "compiler/audit/questions.h"
 #include "compiler/audit/rules.h"
 #include "compiler/audit/stage.h"
+#include "compiler/syntax/parser.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
 #include "runtime/plan/axes.h"
@@ -510,13 +511,64 @@ class Auditor {
 
   void find_warnings() {
     for (const Diagnostic& diagnostic : compilation_.diagnostics.items()) {
-      if (diagnostic.severity == Severity::kWarning && diagnostic.code != Code::P0701)
+      if (diagnostic.severity == Severity::kWarning && diagnostic.code != Code::P0701 &&
+          !is_of_others(diagnostic))
         add_warning(diagnostic, Span{}, std::nullopt);
     }
     for (const Silenced& silenced : compilation_.diagnostics.silenced()) {
       if (silenced.diagnostic.code != Code::P0701)
         add_warning(silenced.diagnostic, silenced.about, silenced.reason);
     }
+  }
+
+  const std::vector<syntax::Decl>& declarations(FileId file) {
+    const auto [known, is_new] = parsed_.try_emplace(file.value);
+    if (is_new) {
+      Diagnostics again;  // said when it was compiled
+      known->second = syntax::parse(compilation_.sources, file, again);
+    }
+    return known->second.file.decls;
+  }
+
+  // Whether a place is in the declaration of a suite: of this one, or of another.
+  bool is_in_suite(const Span& at, bool of_this) {
+    if (at.is_none()) return false;
+    return std::ranges::any_of(declarations(at.file), [&](const syntax::Decl& decl) {
+      const auto* const suite = std::get_if<syntax::SuiteDecl>(&decl.node);
+      return suite != nullptr && is_within(at, decl.span) &&
+             (suite->name.text == audit_.suite) == of_this;
+    });
+  }
+
+  // Of another suite, or of declared tasks none of which is looked at.
+  bool is_of_others(const Diagnostic& said) {
+    const auto in_suite = [&](bool of_this) {
+      return is_in_suite(said.primary, of_this) ||
+             std::ranges::any_of(
+                 said.labels, [&](const Label& label) { return is_in_suite(label.span, of_this); });
+    };
+    if (in_suite(false) && !in_suite(true)) return true;
+    for (const syntax::Decl& decl : declarations(said.primary.file)) {
+      if (!is_within(said.primary, decl.span)) continue;
+      const std::vector<std::uint32_t> tasks = tasks_in(decl.span);
+      return !tasks.empty() && std::ranges::none_of(tasks, [&](std::uint32_t task) {
+        return std::ranges::find(scope_, task) != scope_.end();
+      });
+    }
+    return false;
+  }
+
+  // The tasks whose names stand in a declaration.
+  std::vector<std::uint32_t> tasks_in(const Span& declaration) const {
+    const std::string& file = compilation_.sources.file(declaration.file).name();
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t task = 0; task < plan_.tasks().size(); ++task) {
+      const plan::SpanRecord* span = plan_.span_of(plan::SpanKind::kTasks, task);
+      if (span == nullptr || span->begin < declaration.begin || span->begin >= declaration.end)
+        continue;
+      if (task_place(task).file == file) found.push_back(task);
+    }
+    return found;
   }
 
   void add_warning(const Diagnostic& diagnostic, const Span& about,
@@ -556,6 +608,7 @@ class Auditor {
   std::set<std::string> roots_;
   std::vector<std::uint32_t> scope_;  // tasks: the suite's, then those that no suite holds
   std::map<std::pair<Kind, std::pair<std::uint32_t, std::uint32_t>>, std::size_t> rules_;
+  std::map<std::uint32_t, syntax::ParseResult> parsed_;  // by FileId
   Audit audit_;
 };
 

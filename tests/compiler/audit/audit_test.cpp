@@ -97,6 +97,17 @@ TEST_CASE("the published suite: comparisons of several axes are found, with axes
   }
 }
 
+TEST_CASE("a warning of another suite is none of this one") {
+  const std::string own = "suite own { tasks { carrot_on_plate }; seeds 0 }\n";
+  const std::string drawn =
+      "suite drawn { sample 2 episodes of variants of { carrot_on_plate } seed 5; seeds 0 }\n";
+  const auto cuts = [](const Audited& audited) {
+    return std::ranges::count(audited.audit.findings, "cut", &audit::Finding::code);
+  };
+  CHECK(cuts(audit_text(own + drawn)) == 0);
+  CHECK(cuts(audit_text(drawn + own)) == 1);
+}
+
 TEST_CASE("a solution that does not do what success asks for is found, with what would") {
   const Audited suite = audit_text(R"(
 use "std/fixtures.probe"
