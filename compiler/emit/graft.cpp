@@ -22,6 +22,36 @@ bool is_of_root(const AnalyzedText& text, const Span& span) {
   return !span.is_none() && text.root_files.contains(span.file.value);
 }
 
+// Whether something is measured from a camera or from the robot's base.
+struct FrameFinder {
+  const sema::Model& model;
+  std::set<sema::ExprRef> seen = {};
+
+  bool reads_set(sema::SetRef ref) {
+    using sema::SetOp;
+    const sema::SetNode& set = model.exprs.sets[ref];
+    if (std::ranges::any_of(set.bodies, [&](sema::ExprRef body) { return reads(body); }))
+      return true;
+    const bool is_pair =
+        set.op == SetOp::kUnion || set.op == SetOp::kIntersection || set.op == SetOp::kDifference;
+    return is_pair && (reads_set(set.left) || reads_set(set.right));
+  }
+  bool reads(sema::ExprRef ref) {
+    using sema::ExprOp, sema::Measure;
+    if (!seen.insert(ref).second) return false;
+    const sema::ExprNode& node = model.exprs.nodes[ref];
+    if (node.op == ExprOp::kMeasure &&
+        (node.measure == Measure::kViewX || node.measure == Measure::kViewY ||
+         node.measure == Measure::kRobotX || node.measure == Measure::kRobotY))
+      return true;
+    const bool has_set =
+        node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo;
+    return (has_set && reads_set(node.set)) ||
+           std::ranges::any_of(node.args, [&](sema::ExprRef arg) { return reads(arg); }) ||
+           (node.op == ExprOp::kCall && reads(model.predicates[node.predicate].body));
+  }
+};
+
 class Graft {
  public:
   Graft(const plan::Plan& stored, AnalyzedText text)
@@ -71,10 +101,11 @@ class Graft {
       }
     }
     if (metrics_.empty()) return Failure{Fault::kUsage, "the text declares no metrics", ""};
-    if (text_.model.exprs.needs_frame) {
-      return refuse(metrics_.front(),
-                    "or another one measures from a camera or robot (`view_x`, `robot_x`), which "
-                    "only the plan's own text knows");
+    for (const sema::Metric& metric : metrics_) {
+      if (!FrameFinder{text_.model}.reads(metric.expr)) continue;
+      return refuse(metric,
+                    "measures from a camera or robot (`view_x`, `robot_x`), which only the plan's "
+                    "own text knows");
     }
     return {};
   }
@@ -169,9 +200,10 @@ class Graft {
 }  // namespace
 
 bool is_metrics_alone(const AnalyzedText& text) {
-  const bool has_task =
-      std::ranges::any_of(text.model.tasks, [](const sema::Task& task) { return !task.abstract; });
-  return !has_task && !declared_metrics(text).empty();
+  const bool has_task = std::ranges::any_of(text.model.tasks, [&](const sema::Task& task) {
+    return !task.abstract && is_of_root(text, task.span);
+  });
+  return !has_task && text.compilation.own_suites.empty() && !declared_metrics(text).empty();
 }
 
 std::vector<DeclaredMetrics> declared_metrics(const AnalyzedText& text) {

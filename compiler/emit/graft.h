@@ -37,8 +37,8 @@ struct DeclaredMetrics {
   std::vector<std::string> metrics;
 };
 
-// Whether the text declares metrics and no task that has episodes: then only another plan's tasks
-// can be judged by it.
+// Whether the files that were named declare metrics, no task that has episodes and no suite: then
+// another plan's tasks are judged by it. What they use, as for its fixtures, may have tasks.
 bool is_metrics_alone(const AnalyzedText& text);
 // The sets of metrics of the files that were named, in the order of the text; not those of files
 // that they use.
@@ -46,8 +46,8 @@ std::vector<DeclaredMetrics> declared_metrics(const AnalyzedText& text);
 
 // In: a text without mistakes, a plan. Metrics about what a task does not have (a target, fingers)
 // are left out of that task. Fails (kUsage) when none fits any task, when two sets of the text have
-// a metric of one name, and on `view_x` and its like, which are counted from a camera or robot of
-// the text; and when the plan's program would become too long.
+// a metric of one name, and on one that reads `view_x` or its like, which are counted from a camera
+// or robot of the text; and when the plan's program would become too long.
 Result<Grafted> graft_metrics(const plan::Plan& stored, AnalyzedText text);
 
 }  // namespace probe

@@ -49,7 +49,8 @@ Failure nothing_judged(const std::string& suite, const std::string& tasks,
                        std::span<const std::string> left_out) {
   if (left_out.empty()) return {Fault::kUsage, "no stored episode matches `" + tasks + "`", ""};
   return {Fault::kUsage,
-          "the judging plan has none of the stored tasks, such as `" + left_out.front() + "`",
+          "the judging plan has none of the stored tasks, such as `" + left_out.front() +
+              "`; metrics of a text without tasks and suites of its own are put behind the run's",
           suite};
 }
 
