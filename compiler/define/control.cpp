@@ -357,7 +357,12 @@ void define_home(Context& context, const syntax::ControlStmt& stmt, Robot& robot
                        fmt::format("expected {} positions, one for each joint of the arm, found {}",
                                    arm.size(), positions.size()));
     if (!missing.empty()) said.point("none for " + missing);
-    said.help("the arm's joints are " + names + "; those of fingers have no home");
+    if (robot.fingers.empty()) {
+      said.help("without fingers all joints that move are the arm's: " + names +
+                "; a `urdf` in which those of the hand are fixed has none of them");
+    } else {
+      said.help("the arm's joints are " + names + "; those of fingers have no home");
+    }
     return;
   }
   for (std::size_t i = 0; i < arm.size(); ++i) {

@@ -83,6 +83,14 @@ bool check_motions(Context& context, const Task& task) {
       return false;
     };
     const std::vector<ObjectId> objects = objects_named(model, task, motion.what.text);
+    if (objects.empty() && context.symbols.objects.peek(motion.what.text)) {
+      context
+          .report(Situation::kNotInScene, motion.what.span,
+                  "object `" + motion.what.text + "` is not in the scene of `" + task.name + "`")
+          .help("place it there: `place " + motion.what.text +
+                " at (..)` in the layout, or `distractors " + motion.what.text + "`");
+      return false;
+    }
     if (objects.empty()) {
       std::vector<std::string_view> known = role_names(context);
       for (const ObjectId id : task.objects()) known.push_back(model.objects[id].name);

@@ -52,6 +52,17 @@ bool compile_relation(Context& context, std::uint32_t relation, const syntax::Na
   }
   QueryOp op{QueryOp::kRelation, relation};
   for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!context.symbols.objects.peek(objects[i].text) &&
+        context.symbols.fixtures.peek(objects[i].text)) {
+      context
+          .report(Situation::kRelationObjects, objects[i].span,
+                  "`" + std::string(objects[i].text) + "` is a fixture, and `" +
+                      std::string(name.text) + "` of a phrase is to an object")
+          .help(
+              "a phrase can say where something is among objects; the words of an instruction can "
+              "name a fixture or a part");
+      return false;
+    }
     const auto object = context.symbols.objects.find(objects[i], context.diagnostics);
     if (!object) return false;
     if (i > 0 && op.to[0] == static_cast<ObjectId>(*object)) {

@@ -282,7 +282,15 @@ void check_air(Context& context, const Scene& scene, Own own) {
       Situation::kLawUnread, scene.air_span,
       fmt::format("`{}`, under `{}`, feels no air", robot.name, robot::row_of(robot.law).word));
   name_copy(said, scene, own.physics);
-  said.help("leave `air` and `viscosity` out: laws that give efforts (`osc_pose`) feel it");
+  const std::string feel = "laws that give efforts (`osc_pose`) feel it";
+  if (own.physics) {
+    said.help("leave `air` and `viscosity` out: " + feel);
+  } else {
+    said.help(
+        fmt::format("write `physics {:.6g}Hz friction {:.6g}` in `{}`, without `air` and "
+                    "`viscosity`: {}",
+                    scene.physics_hz, scene.friction, scene.name, feel));
+  }
 }
 
 // A mesh behind the objects moves with the surface, a photo cannot.

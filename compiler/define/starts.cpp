@@ -476,6 +476,16 @@ void report_unclear(Context& context, Relations& relations, const Task& task,
             ? " are too close to call, as things come to rest a little beside where they are put"
             : " cannot be told");
     if (!sum.empty()) said.note("\"" + phrase.text.text + "\": " + sum);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const Denotation meant = InStart(relations, task, starts[i]).denote(phrase, wanted);
+      if (meant.sure.empty()) continue;
+      std::string names;
+      for (const ObjectId id : meant.sure)
+        names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";
+      said.note("in start " + std::to_string(i) + " it denotes " + names +
+                (meant.fits ? ", too" : ""));
+      break;
+    }
     if (!unsaid.empty()) said.note(unsaid);
   }
   std::string places;

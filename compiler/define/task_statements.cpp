@@ -336,7 +336,16 @@ struct TaskReader {
       poisoned = true;
       return;
     }
-    task.refer[*role] = spelled(bound(stmt.phrase));
+    // `none` takes what was copied away again.
+    const Spelled phrase = spelled(bound(stmt.phrase));
+    const auto has_it = [&](const Object& object) {
+      return object.find_phrase(phrase.text) != nullptr;
+    };
+    if (phrase.text == "none" && std::ranges::none_of(context.model.objects, has_it)) {
+      task.refer.erase(*role);
+      return;
+    }
+    task.refer[*role] = phrase;
   }
   void operator()(const syntax::PoseStmt& stmt) {
     PoseOverride pose;

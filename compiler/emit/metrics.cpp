@@ -21,9 +21,15 @@ std::optional<std::uint32_t> Emitter::add_program(const sema::Task& task,
                  {static_cast<std::uint32_t>(task.scene), static_cast<std::uint32_t>(camera)});
   auto known = programs_by_shape_.find(shape);
   if (known == programs_by_shape_.end()) {
+    const std::size_t before = diagnostics_.size();
     auto program = lower::lower_metrics(
         model_, metrics, bodies,
         sema::frame_of(model_, model_.scenes[task.scene], model_.cameras[camera]), diagnostics_);
+    // What is amiss may be what fills a role of this task.
+    for (std::size_t i = before; i < diagnostics_.size(); ++i) {
+      if (diagnostics_[i].severity == Severity::kError)
+        diagnostics_[i].label(task.span, "`" + task.name + "` is judged by it");
+    }
     if (!program) return std::nullopt;
     known = programs_by_shape_.emplace(std::move(shape), keep_program(std::move(*program))).first;
   }

@@ -58,6 +58,11 @@ QueryId Parser::query_not() {
     set_role(TokenRole::kTightParen);
     accept(TokenKind::kLeftParen);
     QueryRelation out{first, names()};
+    if (!failed_ && at(TokenKind::kDot)) {
+      fail(Code::P0101, here(),
+           "found `.`, expected `)`: a relation of a phrase is to objects, not to parts or regions "
+           "of fixtures");
+    }
     expect(TokenKind::kRightParen);
     if (failed_) return {};
     return add(Query{since(begin), std::move(out)}, {});

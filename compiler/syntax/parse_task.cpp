@@ -171,6 +171,10 @@ TaskStmt Parser::task_delay() {
 
 // A whole number of steps, or a time, whose unit touches its number.
 std::variant<Int, Quantity> Parser::steps_or_time() {
+  if (at(TokenKind::kMinus) && text_ahead(2) == "steps") {
+    fail(Code::P0101, here(), "found " + found_text() + ", expected a number of steps, 0 or more");
+    return Int{};
+  }
   if (text_ahead(1) != "steps") return bound_quantity();
   const Int steps = bound_integer();
   expect_word("steps");
