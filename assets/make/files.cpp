@@ -58,12 +58,14 @@ std::string glb_bytes(const std::string& name, const std::vector<Part>& parts) {
     const Material& material = part.material;
     scene::GlbMaterial& written = document.materials.emplace_back();
     written.name = material.name;
-    written.base_color = material.base_color;
+    (material.is_baked ? written.emission : written.base_color) = material.base_color;
+    if (material.is_baked) written.base_color = {0, 0, 0};
     written.roughness = material.roughness;
     scene::GlbPart& arrays = document.parts.emplace_back(index_surface(part.surface));
     arrays.material = document.materials.size() - 1;
     if (material.texture) {
-      written.base_color_image = static_cast<int>(document.images.size());
+      (material.is_baked ? written.emission_image : written.base_color_image) =
+          static_cast<int>(document.images.size());
       const Image& image = *material.texture;
       auto png =
           scene::png_bytes(image.width, image.height, image.rgb, scene::PngEffort::kSmallest);

@@ -12,12 +12,13 @@
 
 namespace probe::make {
 
-// Nothing shines by itself: it would be seen in the dark.
 struct Material {
   std::string name;
   Colour base_color{1, 1, 1};    // linear factor; a texture replaces it
   std::optional<Image> texture;  // embedded as PNG
   double roughness = 1;
+  // Its light is baked in: black, and its colour is seen whatever the lights are.
+  bool is_baked = false;
 };
 
 struct Part {

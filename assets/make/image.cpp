@@ -104,4 +104,13 @@ Colour texel_for(const Colour& lit, double gain, double specular) {
   return texel;
 }
 
+void dim(Image& image, double factor) {
+  std::array<std::uint8_t, 256> dimmed{};
+  for (std::size_t byte = 0; byte < dimmed.size(); ++byte) {
+    const double shown = linear_to_srgb(factor * srgb_to_linear(static_cast<double>(byte)));
+    dimmed[byte] = static_cast<std::uint8_t>(shown + 0.5);
+  }
+  for (std::uint8_t& byte : image.rgb) byte = dimmed[byte];
+}
+
 }  // namespace probe::make

@@ -42,10 +42,15 @@ Colour texel_for(const Colour& lit, double gain, double specular);
 // The same as a linear albedo.
 Colour albedo_for(const Colour& lit, double gain, double specular);
 
+// Every pixel shows so much of its light.
+void dim(Image& image, double factor);
+
 // Diffuse gains of the table's light (ambient 0.3; suns (0,0,-1) 2.2, (-1,-0.5,-1) 0.7, (1,1,-1)
 // 0.7).
 inline constexpr double kGainUp = 1.2775;     // a face turned up
 inline constexpr double kGainPlusX = 0.4485;  // a wall facing +x
 inline constexpr double kGainPlusY = 0.3743;  // a wall facing +y
+// Between a wall's and a top's, for what has its light baked in.
+inline constexpr double kGainBaked = 0.62;
 
 }  // namespace probe::make

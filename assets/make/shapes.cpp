@@ -251,6 +251,22 @@ std::vector<OutputFile> object_files(const std::string& name, const std::vector<
           {"objects/" + name + "/collision.obj", obj_bytes(collision)}};
 }
 
+std::vector<OutputFile> baked_files(const std::string& name, const std::vector<Part>& lit,
+                                    const std::vector<Polyhedron>& collision) {
+  std::vector<Part> parts = lit;
+  for (Part& part : parts) {
+    Material& material = part.material;
+    material.is_baked = true;
+    material.roughness = 1;
+    if (material.texture) {
+      dim(*material.texture, kGainBaked);
+    } else {
+      for (double& channel : material.base_color) channel *= kGainBaked;
+    }
+  }
+  return object_files(name, parts, collision);
+}
+
 Part plain_part(Surface surface, std::string name, const Colour& base_color, double roughness) {
   return {std::move(surface),
           {.name = std::move(name),

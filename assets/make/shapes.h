@@ -106,6 +106,10 @@ void add_octagon(std::vector<Vec3>& points, const Octagon& shape);
 // The two files of an object.
 std::vector<OutputFile> object_files(const std::string& name, const std::vector<Part>& parts,
                                      const std::vector<Polyhedron>& collision);
+// The same with its light baked in: each part shows by itself what it would in a diffuse light of
+// `kGainBaked`.
+std::vector<OutputFile> baked_files(const std::string& name, const std::vector<Part>& lit,
+                                    const std::vector<Polyhedron>& collision);
 // A part of one colour.
 Part plain_part(Surface surface, std::string name, const Colour& base_color, double roughness);
 Part painted_part(Surface surface, std::string name, Image texture, double roughness);

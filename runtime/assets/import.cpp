@@ -62,7 +62,8 @@ class Import {
         is_google ? std::span<const KnownModel>(kGoogleModels) : kKnownModels;
     for (const KnownModel& model : models) {
       known.emplace(model.id);
-      PROBE_TRY(add_model(std::string(model.id), std::string(model.folder), model.scale));
+      PROBE_TRY(add_model(std::string(model.id), std::string(model.folder), model.scale,
+                          std::string(model.felt_as)));
     }
     if (is_google) {
       for (const std::string_view photo : kGooglePhotos) PROBE_TRY(add_photo(std::string(photo)));
@@ -119,7 +120,8 @@ class Import {
     return "";
   }
 
-  Status add_model(const std::string& id, const std::string& name, double scale) {
+  Status add_model(const std::string& id, const std::string& name, double scale,
+                   const std::string& felt_as = "") {
     const auto folder = data_.models.find(id);
     if (folder == data_.models.end()) return miss(name, "no model `" + id + "` in the data");
     const std::string seen = find_mesh(folder->second, "textured");
@@ -128,6 +130,10 @@ class Import {
     if (seen.empty() && !is_unseen) {
       return miss(name, id + " has no textured.glb, .gltf, .dae, .obj or .stl");
     }
+    // The same bytes in the release; a copy of it may hold equal files once.
+    const auto plain = data_.models.find(felt_as);
+    const bool from_plain = felt.empty() && plain != data_.models.end();
+    if (from_plain) felt = find_mesh(plain->second, "collision");
     const Vec3 scales(scale, scale, scale);
     auto visual = is_unseen ? unseen_visual() : convert_visual(seen, scales, limits_, id);
     if (!visual) return miss(name, short_text(visual.failure(), options_.from));
@@ -139,6 +145,7 @@ class Import {
     PROBE_TRY(write(name + "/visual.glb", visual->glb, is_unseen ? id : relative(seen)));
     PROBE_TRY(write(name + "/collision.obj", collision->obj, relative(felt)));
     std::vector<std::string> odd = oddities(id, scale, *visual, *collision);
+    if (from_plain && !from_visual) odd.push_back("felt as " + felt_as);
     if (is_unseen) odd.push_back("never drawn in the reference: the photo shows it");
     const std::string summary = fmt::format(
         "{}{}: {} triangles, {}{} convex part{}, {}", id,

@@ -12,6 +12,8 @@ struct KnownModel {
   std::string_view id;  // folder below data/custom/models
   std::string_view folder;
   double scale;  // the suite's tasks use the model at this size
+  // The model whose collision mesh stands for it where it has none.
+  std::string_view felt_as = "";
 };
 
 // The scales are those of the INT-ACT tasks.
@@ -40,7 +42,7 @@ inline constexpr std::array kKnownModels{
 };
 
 // The same for suite/google.probe, whose cans and orange are of double size. 7up, Sprite and Fanta
-// are painted cans there.
+// are painted cans there; the baked ones, which shine, are visual matching's.
 inline constexpr std::array kGoogleModels{
     KnownModel{"opened_coke_can", "objects/coke_can", 0.5},
     KnownModel{"opened_pepsi_can", "objects/pepsi_can", 0.5},
@@ -54,6 +56,13 @@ inline constexpr std::array kGoogleModels{
     KnownModel{"eggplant", "objects/eggplant", 1},
     KnownModel{"green_cube_3cm", "objects/green_cube", 1},
     KnownModel{"yellow_cube_3cm", "objects/yellow_cube", 1},
+    KnownModel{"baked_opened_coke_can", "objects/baked_coke_can", 0.5, "opened_coke_can"},
+    KnownModel{"baked_opened_pepsi_can", "objects/baked_pepsi_can", 0.5, "opened_pepsi_can"},
+    KnownModel{"baked_opened_7up_can", "objects/baked_7up_can", 0.5, "opened_7up_can"},
+    KnownModel{"baked_opened_redbull_can", "objects/baked_slim_can", 1, "opened_redbull_can"},
+    KnownModel{"baked_sponge", "objects/baked_long_sponge", 1, "sponge"},
+    KnownModel{"baked_apple", "objects/baked_apple", 1, "apple"},
+    KnownModel{"baked_apple_v2", "objects/baked_apple_v2", 1, "apple"},
 };
 
 // The target plane in the sink: it is felt and never drawn, the photo shows the basket.

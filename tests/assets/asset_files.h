@@ -185,8 +185,10 @@ inline const std::vector<std::string>& published_names() {
 inline const std::vector<std::string>& object_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = published_names();
-    for (const char* name : {"apple", "bottle", "bowl", "long_sponge", "mug", "slim_can", "tray",
-                             "water_bottle", "wicker_basket"})
+    for (const char* name :
+         {"apple", "baked_7up_can", "baked_apple", "baked_apple_v2", "baked_coke_can",
+          "baked_long_sponge", "baked_pepsi_can", "baked_slim_can", "bottle", "bowl", "long_sponge",
+          "mug", "slim_can", "tray", "water_bottle", "wicker_basket"})
       all.emplace_back(name);
     return all;
   }();

@@ -1,5 +1,6 @@
-// Two drink cans, 3.3 cm across and 6.15 cm tall, along local y, lid at +y. The labels are
-// invented: COLA on red with a white wave, FIZZ on blue in a white ring.
+// Drink cans, 3.3 cm across and 6.15 cm tall, along local y, lid at +y. The labels are invented:
+// COLA on red with a white wave, FIZZ on blue in a white ring; ALOE on green, with its light baked
+// in alone.
 #include <cmath>
 
 #include "assets/make/generators.h"
@@ -31,9 +32,10 @@ double ink(std::string_view word, const Vec2& at, const Vec2& middle, const Vec2
   return smooth_step(kBold + kSoft, kBold - kSoft, stroke_distance(word, place));
 }
 
-Image cola_label() {
-  const Colour red = texel_for({206, 22, 28}, kGain, kShine);
-  const Colour deep = texel_for({150, 8, 16}, kGain, kShine);
+// A word over a white wave, on `lit` with ends in `deep_lit`.
+Image wave_label(std::string_view word, const Colour& lit, const Colour& deep_lit) {
+  const Colour ground = texel_for(lit, kGain, kShine);
+  const Colour deep = texel_for(deep_lit, kGain, kShine);
   const Colour white = texel_for({238, 236, 232}, kGain, kShine);
   Image image(kLabelWidth, kLabelHeight);
   for (int row = 0; row < kLabelHeight; ++row) {
@@ -42,14 +44,17 @@ Image cola_label() {
       const double wave = -13 + 4.5 * portable_sin(2 * kPi * (p.x() + 4) / kFace);
       const double band = smooth_step(2.6, 2.1, std::abs(p.y() - wave));
       const double thin = smooth_step(0.9, 0.5, std::abs(p.y() - wave + 4.6));
-      Colour c = mix(red, deep, smooth_step(24.5, 28, std::abs(p.y())));
+      Colour c = mix(ground, deep, smooth_step(24.5, 28, std::abs(p.y())));
       c = mix(c, white, std::max(band, thin));
-      c = mix(c, white, ink("COLA", p, {0, 5}, {26.5, 12}));
+      c = mix(c, white, ink(word, p, {0, 5}, {26.5, 12}));
       image.set(column, row, c);
     }
   }
   return image;
 }
+
+Image cola_label() { return wave_label("COLA", {206, 22, 28}, {150, 8, 16}); }
+Image aloe_label() { return wave_label("ALOE", {64, 150, 76}, {28, 104, 48}); }
 
 Image fizz_label() {
   const Colour blue = texel_for({18, 62, 148}, kGain, kShine);
@@ -100,7 +105,7 @@ Image lid_texture() {
   return image;
 }
 
-std::vector<OutputFile> make_can(const std::string& name, Image label) {
+std::vector<OutputFile> make_can(const std::string& name, Image label, bool is_baked = false) {
   const std::vector<Vec2> lid_profile{{0, 28.6},    {10.6, 28.6},  {11.4, 27.9}, {12.0, 28.2},
                                       {12.4, 30.4}, {12.9, 30.75}, {13.4, 30.4}, {13.2, 29.2}};
   const std::vector<Vec2> body_profile{{13.2, 29.2},  {14.8, 27.4},  {16.1, 25.2}, {16.5, 23.6},
@@ -132,7 +137,7 @@ std::vector<OutputFile> make_can(const std::string& name, Image label) {
     }
   }
   const Colour metal = albedo_for({186, 189, 195}, 0.62, 0.02);
-  return object_files(
+  return (is_baked ? baked_files : object_files)(
       name,
       {painted_part(lid, "lid", lid_texture(), 0.35),
        painted_part(body, "label", std::move(label), 0.4), plain_part(foot, "foot", metal, 0.35)},
@@ -143,5 +148,14 @@ std::vector<OutputFile> make_can(const std::string& name, Image label) {
 
 std::vector<OutputFile> make_coke_can() { return make_can("coke_can", cola_label()); }
 std::vector<OutputFile> make_pepsi_can() { return make_can("pepsi_can", fizz_label()); }
+std::vector<OutputFile> make_baked_cans() {
+  std::vector<OutputFile> all;
+  for (auto& files : {make_can("baked_coke_can", cola_label(), true),
+                      make_can("baked_pepsi_can", fizz_label(), true),
+                      make_can("baked_7up_can", aloe_label(), true)}) {
+    all.insert(all.end(), files.begin(), files.end());
+  }
+  return all;
+}
 
 }  // namespace probe::make

@@ -199,6 +199,30 @@ TEST_CASE("for the Google robot's suite: what is there under its names, what is 
   CHECK(fs::exists(folder / "filled/objects/slim_can/visual.glb"));
 }
 
+TEST_CASE(
+    "a baked thing of the release shines, and without a mesh of its own is felt as the plain") {
+  TemporaryFolder folder;
+  make_google_data(folder / "repo");
+  const std::string models = folder / "repo/data/custom/models/";
+  // Of another width than what is felt.
+  write_text(models + "baked_opened_coke_can/textured.dae", dae_box("Z_UP", 2.5));
+  write_text(models + "baked_opened_pepsi_can/textured.dae", dae_box("Z_UP", 2.5));
+  write_text(models + "baked_opened_pepsi_can/collision.obj", obj_box());
+  write_text(models + "baked_sponge/textured.dae", dae_box("Z_UP"));
+  const auto report = import_data({folder / "repo", folder / "out", "", ImportFor::kGoogle});
+  REQUIRE_MESSAGE(report.ok(), to_text(report.failure()));
+  const auto felt = [&](const std::string& name) {
+    return *read_file(folder / ("out/objects/" + name + "/collision.obj"));
+  };
+  CHECK(says(line_of(*report, "objects/baked_coke_can"), "felt as opened_coke_can"));
+  CHECK(felt("baked_coke_can") == felt("coke_can"));
+  CHECK_FALSE(says(line_of(*report, "objects/baked_pepsi_can"), "felt as opened"));
+  // No plain one in the data either.
+  CHECK(says(line_of(*report, "objects/baked_long_sponge"), "taken from the picture mesh"));
+  CHECK(says(line_of(*report, "objects/baked_7up_can"),
+             "missing no model `baked_opened_7up_can` in the data"));
+}
+
 TEST_CASE("what is copied is the suite's own, not filled in; folders of models are no model") {
   TemporaryFolder folder;
   make_google_data(folder / "repo");
@@ -282,7 +306,7 @@ TEST_CASE("tasks whose thing has no mesh in an imported folder are named, with t
   CHECK(says(said, "asset `objects/water_bottle/visual"));
 }
 
-TEST_CASE("the released assets of the Google robot lack three things' meshes, and no photo") {
+TEST_CASE("the released assets of the Google robot lack four things' meshes, and no photo") {
   const std::string released = VLAPROBE_SOURCE_DIR "/../shared/reference/google/google_assets";
   if (!fs::exists(released)) {
     MESSAGE("skipped: the Google robot's released assets are not on this machine");
@@ -297,7 +321,8 @@ TEST_CASE("the released assets of the Google robot lack three things' meshes, an
     MESSAGE(to_word(line.verdict) << " " << line.name << "  " << line.text);
   }
   CHECK(line_of(*report, "objects/_substitutes") == "no line");
-  for (const char* name : {"objects/slim_can", "objects/water_bottle", "objects/eggplant"})
+  for (const char* name :
+       {"objects/slim_can", "objects/water_bottle", "objects/eggplant", "objects/baked_slim_can"})
     CHECK(std::ranges::find(missing, name) != missing.end());
   CHECK(std::ranges::none_of(missing,
                              [](const std::string& name) { return name.starts_with("scenes/google/"); }));
