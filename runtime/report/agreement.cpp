@@ -19,8 +19,9 @@ stats::MeasuredRate measured(const PublishedFigure& figure) {
   return {figure.value, figure.trials};
 }
 
+// Sources divide the name of a column otherwise, and some leave `average` away.
 bool is_same_cell(const PublishedFigure& a, const PublishedFigure& b) {
-  return a.policy == b.policy && a.task == b.task && a.subtask == b.subtask;
+  return a.policy == b.policy && column_of(a) == column_of(b);
 }
 
 // The real rate beside a simulated one: of its own source, else the first in the file.
@@ -79,6 +80,16 @@ RunRate run_rate(const Benchmark& benchmark, int policy, std::string_view set_na
   return of;
 }
 
+// The fewest trials that a simulated rate of the table says for a column; 0 where none does.
+double fewest_trials(const RateTable& table, const std::string& column) {
+  double fewest = 0;
+  for (const PublishedFigure& figure : table.figures) {
+    if (!is_rate(figure) || figure.protocol == kReal || column_of(figure) != column) continue;
+    if (figure.trials > 0 && (fewest == 0 || figure.trials < fewest)) fewest = figure.trials;
+  }
+  return fewest;
+}
+
 }  // namespace
 
 std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) {
@@ -97,10 +108,14 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
         continue;
       const RunRate of = run_rate(benchmark, static_cast<int>(p), column_of(real));
       if (of.count.n == 0) continue;
-      if (of.starts < of.planned) {
+      // A plan of some tasks alone has smaller sets and does not know it.
+      const double trials = fewest_trials(table, column_of(real));
+      const bool is_part = of.starts < of.planned;
+      if (is_part || static_cast<double>(of.starts) < trials) {
         std::string& columns = partial[real.policy];
-        columns += fmt::format("{}{} of {} starts of `{}`", columns.empty() ? "" : ", ", of.starts,
-                               of.planned, column_of(real));
+        columns += fmt::format("{}{}{} starts of `{}`", columns.empty() ? "" : ", ", of.starts,
+                               is_part ? fmt::format(" of {}", of.planned) : "", column_of(real));
+        if (!is_part) columns += fmt::format(" where simulated rates are of {} and more", trials);
       }
       PublishedFigure figure = real;
       figure.source = figure.protocol = kTheseRuns;
@@ -148,13 +163,13 @@ std::vector<AgreementRow> agreements(const RateTable& table) {
     std::vector<std::string> policies, without_real;
     std::vector<stats::MeasuredRate> real, simulated;
   };
-  std::vector<std::array<std::string, 4>> order;
-  std::map<std::array<std::string, 4>, Sides> columns;
+  std::vector<std::pair<std::array<std::string, 3>, const PublishedFigure*>>
+      order;                                            // the first of each
+  std::map<std::array<std::string, 3>, Sides> columns;  // by source, protocol and column
   for (const PublishedFigure& figure : table.figures) {
     if (!is_rate(figure) || figure.protocol == kReal) continue;
-    const std::array<std::string, 4> key = {figure.source, figure.protocol, figure.task,
-                                            figure.subtask};
-    if (!columns.contains(key)) order.push_back(key);
+    const std::array<std::string, 3> key = {figure.source, figure.protocol, column_of(figure)};
+    if (!columns.contains(key)) order.emplace_back(key, &figure);
     Sides& sides = columns[key];
     const PublishedFigure* real = real_of(table, figure);
     if (real == nullptr) {
@@ -166,22 +181,20 @@ std::vector<AgreementRow> agreements(const RateTable& table) {
     sides.simulated.push_back(measured(figure));
   }
   std::vector<AgreementRow> rows;
-  for (const auto& key : order) {
+  for (const auto& [key, first] : order) {
     const Sides& sides = columns[key];
     if (sides.policies.size() < kFewest) continue;
     std::vector<std::string> without_simulated;
     for (const PublishedFigure& figure : table.figures) {
-      if (!is_rate(figure) || figure.protocol != kReal || figure.task != key[2] ||
-          figure.subtask != key[3])
-        continue;
+      if (!is_rate(figure) || figure.protocol != kReal || column_of(figure) != key[2]) continue;
       const auto is_in = [&](const std::vector<std::string>& names) {
         return std::ranges::find(names, figure.policy) != names.end();
       };
       if (!is_in(sides.policies) && !is_in(without_simulated))
         without_simulated.push_back(figure.policy);
     }
-    rows.push_back({key[0], key[1], key[2], key[3], sides.policies, sides.without_real,
-                    std::move(without_simulated),
+    rows.push_back({first->source, first->protocol, first->task, first->subtask, sides.policies,
+                    sides.without_real, std::move(without_simulated),
                     stats::rank_agreement(sides.real, sides.simulated)});
   }
   return rows;
@@ -194,8 +207,8 @@ std::vector<StatedAgreement> stated_agreements(const RateTable& table,
     const bool is_violation = figure.metric == "MMRV";
     if (!is_violation && figure.metric != "Pearson") continue;
     const auto fits = [&](const AgreementRow& row) {
-      return row.protocol == figure.protocol && row.task == figure.task &&
-             row.subtask == figure.subtask && (is_violation || row.agreement.correlation);
+      return row.protocol == figure.protocol && column_of(row) == column_of(figure) &&
+             (is_violation || row.agreement.correlation);
     };
     // Its own source's rates, else the first.
     auto row = std::ranges::find_if(

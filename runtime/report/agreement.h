@@ -20,7 +20,8 @@ inline constexpr std::string_view kTheseRuns = "these runs";
 // Appends the runs' rates of success, of tasks in sets that are called as columns are: task and
 // subtask joined by `_`, the task alone for the subtask `average`. Only of policies that the table
 // has real rates of, by name; trials are starts, as episodes of one are not independent. What of
-// the runs was left out, and which rates are of a part of their set, a sentence each.
+// the runs was left out, and which rates are of a part of their set, or of fewer starts than every
+// simulated rate of the column in the table, a sentence each.
 std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark);
 
 // One column of one protocol of one source, against the real rates of the same policies: those of

@@ -101,6 +101,17 @@ Result<Key> key_of(const Header& header, const std::vector<std::string>& cells,
   return key;
 }
 
+// What a source says once: task and subtask as the column that they name together.
+Key named(const Key& key) {
+  PublishedFigure of;
+  of.task = key[kTask];
+  of.subtask = key[kSubtask];
+  Key out = key;
+  out[kTask] = column_of(of);
+  out[kSubtask].clear();
+  return out;
+}
+
 PublishedFigure figure_of(const Key& key, std::size_t line) {
   const auto shown = [&](Column column) { return printable(key[column], kLongest); };
   PublishedFigure figure;
@@ -146,6 +157,9 @@ std::string name_of(const PublishedFigure& figure) {
 
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file) {
   RateTable table{file, {}, {}};
+  if (csv.starts_with("\xff\xfe") || csv.starts_with("\xfe\xff") ||
+      first_line(csv).find('\0') != std::string_view::npos)
+    return Failure{Fault::kUsage, "is in UTF-16: save it as UTF-8", file};
   PROBE_ASSIGN(const Header header, read_header(first_line(csv), file + ":1"));
   std::map<Key, std::size_t> lines;  // of the figures
   std::size_t number = 0;
@@ -162,7 +176,7 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
       return Failure{Fault::kUsage,
                      fmt::format("{} cells where the first line has {}", cells.size(), header.size),
                      where};
-    PROBE_ASSIGN(Key key, key_of(header, cells, where));
+    PROBE_ASSIGN(const Key key, key_of(header, cells, where));
     PublishedFigure figure = figure_of(key, number);
     const std::string& written = cells[header.at[kValue]];
     const auto value = number_of(written);
@@ -174,7 +188,7 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
     PROBE_TRY(put_value(*value, written, where, figure));
     if (table.figures.size() >= kMostFigures)
       return Failure{Fault::kUsage, fmt::format("more than {} figures", kMostFigures), where};
-    if (const auto [first, is_new] = lines.try_emplace(std::move(key), number); !is_new)
+    if (const auto [first, is_new] = lines.try_emplace(named(key), number); !is_new)
       return Failure{Fault::kUsage,
                      fmt::format("{}: {} of this source is on line {} already", name_of(figure),
                                  figure.metric, first->second),

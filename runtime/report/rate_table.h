@@ -29,7 +29,8 @@ struct RateTable {
 // value in any order. `trials_per_published_protocol` (or `trials`) is read where it is there,
 // other columns are passed over. Fails (kUsage, where = file:line) on a column that is missing or
 // there twice, a row of another length, a line break in a cell, a success_rate that is not from 0
-// to 1, and a figure that the same source gives twice.
+// to 1, a figure that the same source gives twice, and UTF-16. What `column_of` calls alike is one
+// column.
 Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file);
 
 // The protocol of real rates.

@@ -105,6 +105,41 @@ TEST_CASE("a table that says a thing twice, or not where it is looked for, is re
   CHECK(refused(lines) == "t.csv:1: lines end in a carriage return alone: save it with line feeds");
 }
 
+TEST_CASE("columns that are called alike are one, however sources divide the name") {
+  const std::string header = kSmall.substr(0, kSmall.find('\n') + 1);
+  const std::string table = header +
+                            "P,real,success_rate,a,pick_can,,0.9,10\n"
+                            "P,real,success_rate,b,pick_can,average,0.5,10\n"
+                            "P,real,success_rate,c,pick,can,0.2,10\n"
+                            "Q,sim,success_rate,a,pick_can,average,0.8,20\n"
+                            "Q,sim,success_rate,b,pick_can,,0.1,20\n"
+                            "Q,sim,success_rate,c,pick,can,0.4,20\n"
+                            "Q,sim,MMRV,(3),pick_can,,0.2,\n";
+  const RateTable read = parsed(table);
+  const auto rows = agreements(read);
+  REQUIRE(rows.size() == 1);
+  CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
+  CHECK(rows[0].without_simulated.empty());
+  REQUIRE(stated_agreements(read, rows).size() == 1);
+  CHECK(stated_agreements(read, rows)[0].is_close);
+  CHECK(refused(table + "Q,sim,success_rate,b,pick,can,0.7,20\n") ==
+        "t.csv:9: b, sim, pick_can: success_rate of this source is on line 6 already");
+}
+
+TEST_CASE("a table in UTF-16 is told as such, in either order, with and without a mark") {
+  for (const bool is_big : {false, true}) {
+    std::string wide;
+    for (const char c : kSmall) {
+      if (is_big) wide += '\0';
+      wide += c;
+      if (!is_big) wide += '\0';
+    }
+    CHECK(refused(wide) == "t.csv: is in UTF-16: save it as UTF-8");
+    CHECK(refused((is_big ? "\xfe\xff" : "\xff\xfe") + wide) ==
+          "t.csv: is in UTF-16: save it as UTF-8");
+  }
+}
+
 TEST_CASE("values that are no number, and policies with one rate of two, are left out by name") {
   for (const char* value : {"nan", "NaN", "inf", "-inf", "1e9", "9e-1", "0x1", "90%", "+0.9", ""}) {
     CAPTURE(value);
@@ -154,13 +189,32 @@ TEST_CASE(
   CHECK(rows[0].policies == std::vector<std::string>{"a", "b", "c"});
   REQUIRE(said.size() == 3);
   std::size_t planned = 0;
+  std::vector<std::string> core;
   for (const plan::SetRecord& set : plan.sets()) {
     if (plan.text(set.name) != "core") continue;
-    for (const std::uint32_t task : plan.members(set))
+    for (const std::uint32_t task : plan.members(set)) {
       planned += plan.episodes(plan.suites()[0], task).size();
+      core.emplace_back(plan.text(plan.tasks()[task].name));
+    }
   }
   CHECK(said[0] ==
         "`a` has 12 of " + std::to_string(planned) + " starts of `core`: its rates are of these");
+
+  // Whole as far as the plan knows, which may be of some tasks alone: the table's own simulations
+  // have more trials.
+  const std::string simulated =
+      real + "P,sim,success_rate,a,core,average,0.9,1000\nP,sim,success_rate,b,core,,0.4,2000\n";
+  fake_run(folder / "whole", plan, "b", {.tasks = core, .last = 23}, always(false));
+  const std::vector<std::string> whole = {folder / "whole"};
+  const auto fewer = load(whole);
+  REQUIRE_MESSAGE(fewer.ok(), to_text(fewer.failure()));
+  table = parsed(simulated);
+  CHECK(add_runs(table, *fewer)[0] == "`b` has " + std::to_string(planned) +
+                                          " starts of `core` where simulated rates are of 1000 and "
+                                          "more: its rates are of these");
+  table = parsed(real);
+  for (const std::string& line : add_runs(table, *fewer))
+    CHECK_MESSAGE(line.find("its rates are of these") == line.npos, line);
 
   // Two folders of one name that cannot be one run.
   fake_run(folder / "d", plan, "c", {.tasks = {"carrot_on_plate"}, .content = "other"},
