@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "compiler/diag/text.h"
@@ -86,4 +87,41 @@ TEST_CASE("the paper's own table fits its categories but for one") {
   MESSAGE(paper->findings[0].message);
   CHECK(paper->findings[0].message.find("`ood_target`") != std::string::npos);
   CHECK(paper->findings[0].message.ends_with("all are over 5 such tasks"));
+}
+
+TEST_CASE(
+    "of the Google robot's Table IV no trials give three percentages, and six of the variants") {
+  const std::string folder = VLAPROBE_SOURCE_DIR "/suite/";
+  const std::string file = folder + "google.probe";
+  const auto of = [&](const std::string& name, const std::string& csv) {
+    auto compiled =
+        build(std::span(&file, 1), {.asset_root = VLAPROBE_SOURCE_DIR "/assets", .suite = name});
+    REQUIRE(compiled.ok());
+    REQUIRE_MESSAGE(compiled->ok, render_text(compiled->diagnostics, compiled->sources));
+    const auto plan = plan::Plan::from_bytes(std::move(compiled->plan));
+    REQUIRE(plan.ok());
+    std::ifstream in(folder + "google/" + csv);
+    const std::string table((std::istreambuf_iterator<char>(in)), {});
+    audit::Audit audit;
+    REQUIRE(audit::check_table(audit, *compiled, *plan, 0, table, csv).ok());
+    CHECK(audit.unchecked.empty());
+    std::map<std::string, int> odd;  // by column
+    for (const audit::Finding& finding : audit.findings) {
+      CHECK(finding.kind == audit::Kind::kTable);
+      const std::size_t at = finding.message.find('`') + 1;
+      odd[finding.message.substr(at, finding.message.find('`', at) - at)] +=
+          std::stoi(finding.message);
+    }
+    return odd;
+  };
+  const auto sum = [](const std::map<std::string, int>& odd) {
+    int all = 0;
+    for (const auto& [column, count] : odd) all += count;
+    return all;
+  };
+  const auto matching = of("google_visual_matching", "published_visual_matching.csv");
+  CHECK(matching ==
+        std::map<std::string, int>{{"drawer_open", 1}, {"drawer_close", 1}, {"drawer", 1}});
+  CHECK(sum(matching) == 3);
+  CHECK(sum(of("google_variants", "published_variants.csv")) == 6);
 }

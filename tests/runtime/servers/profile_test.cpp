@@ -173,6 +173,31 @@ TEST_CASE("every ready profile is whole, says what it is and is found by its nam
   CHECK(find_profile("./nowhere.profile").failure().where == "./nowhere.profile");
 }
 
+TEST_CASE("a switch of the gripper is held by the Google robot's checkpoints as their authors do") {
+  struct Held {
+    const char* name;
+    StickyRule rule;
+    int steps;
+  };
+  for (const Held& held : {Held{"openvla_fractal", StickyRule::kLast, 15},
+                           Held{"pi0_fractal", StickyRule::kSwitch, 10},
+                           Held{"pi0_fractal_lerobot", StickyRule::kSwitch, 10}}) {
+    CAPTURE(held.name);
+    const auto profile = find_profile(held.name);
+    REQUIRE(profile.ok());
+    CHECK(profile->action_sticky == held.rule);
+    CHECK(profile->action_sticky_steps == held.steps);
+  }
+  // Behind their classes of SimplerEnv's manner, which hold by themselves.
+  for (const char* name :
+       {"rt1_fractal", "rt1x_fractal", "octo_fractal", "spatialvla_fractal", "magma_fractal"}) {
+    CAPTURE(name);
+    const auto profile = find_profile(name);
+    REQUIRE(profile.ok());
+    CHECK(profile->action_sticky == StickyRule::kNone);
+  }
+}
+
 TEST_CASE("the profile to copy has every default spelt out") {
   const auto copy = find_profile("copy_me");
   REQUIRE(copy.ok());
