@@ -23,15 +23,15 @@ Pose turned(const Vec3& place, double yaw) {
   return {place, Quat(half.cos, 0, 0, half.sin)};
 }
 
-// All that have a collision mesh.
+// All that have a collision mesh; what has its light baked in has the plain thing's.
 std::vector<std::string> object_names() {
   std::vector<std::string> names;
   const std::string folder = std::string(VLAPROBE_SOURCE_DIR) + "/assets/objects";
   if (!std::filesystem::is_directory(folder)) return names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (std::filesystem::exists(entry.path() / "collision.obj")) {
-      names.push_back(entry.path().filename().string());
-    }
+    const std::string name = entry.path().filename().string();
+    if (std::filesystem::exists(entry.path() / "collision.obj") && !name.starts_with("baked_"))
+      names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
