@@ -80,7 +80,7 @@ struct Hand {
 };
 
 struct Robot {
-  std::string name;                   // the description's
+  std::string name;                   // as the text declares it, not as its description calls it
   const RobotModel* model = nullptr;  // outlives the robot
   std::string tcp_link;
   std::vector<std::string> joints;  // those that have drives, in the order of q

@@ -122,7 +122,7 @@ Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& r
   const std::string where = "robot `" + std::string(plan.text(record.name)) + "`";
   const robot::RobotModel& model = parts.model;
   robot::Robot robot;
-  robot.name = model.name;
+  robot.name = std::string(plan.text(record.name));
   robot.model = &model;
   robot.tcp_link = std::string(plan.text(record.tcp));
   robot.joints = drive_joints(plan, record);
@@ -149,7 +149,7 @@ Result<robot::Robot> robot_of(const plan::Plan& plan, const plan::RobotRecord& r
                    where};
   }
   PROBE_ASSIGN(robot.law, law_of(plan, record, where));
-  if (robot.fingers.size() == 2) robot.hand = robot::known_hand(robot.name);
+  if (robot.fingers.size() == 2) robot.hand = robot::known_hand(model.name);
   if (!robot.hand) robot.hand = hand_of_shapes(robot, parts);
   return robot;
 }

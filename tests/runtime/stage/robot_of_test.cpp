@@ -46,7 +46,7 @@ TEST_CASE("the plan's robot has the joints, fingers and gripper that its text na
   const Set set;
   const auto robot = robot_of(set.plan, set.record, *set.parts);
   REQUIRE_MESSAGE(robot.ok(), (robot.ok() ? "" : to_text(robot.failure())));
-  CHECK(robot->name == "wx250s");
+  CHECK(robot->name == "widowx");
   CHECK(robot->tcp_link == "ee_gripper_link");
   CHECK(robot->control.arm_joints == std::vector<std::string>{"waist", "shoulder", "elbow",
                                                               "forearm_roll", "wrist_angle",
