@@ -1,11 +1,9 @@
-#include <doctest/doctest.h>
+#include "tests/campaigns/check_campaign.h"
 
-#include "tests/shell_program.h"
+using namespace probe;
 
 TEST_CASE("a verb that is killed leaves nothing half, and comes to what it would have come to") {
-  const auto [status, said] = probe::test::run_shell(
-      "bash '" VLAPROBE_SOURCE_DIR "/tests/campaigns/verb_kills.sh' 5 '" VLAPROBE_BINARY_DIR
-      "/vlaprobe'");
-  CHECK_MESSAGE(status == 0, said);
-  CHECK_MESSAGE(said.find("every output is that of a calm one") != said.npos, said);
+  test::check_campaign("bash '" VLAPROBE_SOURCE_DIR
+                       "/tests/campaigns/verb_kills.sh' 5 '" VLAPROBE_BINARY_DIR "/vlaprobe'",
+                       {"every output is that of a calm one"});
 }
