@@ -23,6 +23,8 @@ constexpr double kFingersGive = 1e-6;
 // The longer third phase of settling, if something still moves faster than this (m/s, rad/s, summed
 // over objects and joints of fixtures), and how long it is (s). From the reference's reset.
 constexpr double kStillSpeed = 1e-3, kStillSpin = 1e-2, kExtraSettle = 1.5;
+// m/s: what is faster when all of that is over is in the air, not rolling or sliding out.
+constexpr double kSettledSpeed = 0.5;
 
 // An articulation that nobody drives, its joints at `positions`. Its springs rest where the fixture
 // says, wherever settling has left the joints.
@@ -163,6 +165,7 @@ Result<EpisodeWorld::Arrangement> EpisodeWorld::settle(const Arrangement& placed
   if (still_moves(*world)) {
     PROBE_TRY(world->step(static_cast<int>(std::lround(kExtraSettle * scene_.physics_hz))));
   }
+  PROBE_TRY(check_settled(*world));
   Arrangement settled;
   for (std::size_t i = 0; i < bodies_.objects; ++i) settled.objects.push_back(world->body(i).pose);
   const auto joints = world->joints().subspan(controller_.joint_count());
@@ -187,6 +190,22 @@ bool EpisodeWorld::still_moves(const world::World& world) const {
     }
   }
   return speed > kStillSpeed || spin > kStillSpin;
+}
+
+// An episode begins with everything at rest: in the air it would begin where nothing can be.
+Status EpisodeWorld::check_settled(const world::World& world) const {
+  for (std::size_t i = 0; i < bodies_.objects; ++i) {
+    const auto body = world.body(i);
+    const double speed = body.velocity.norm();
+    if (speed <= kSettledSpeed) continue;
+    return Failure{
+        Fault::kWorld,
+        fmt::format("`{}` has not come to rest: it moves at {:.1f} m/s, its middle {:.2f} m "
+                    "above the surface, when the time to settle ends",
+                    bodies_.names[i], speed, body.center.z() - scene_.surface_z),
+        ""};
+  }
+  return {};
 }
 
 Status EpisodeWorld::begin_world(const Arrangement& at) {

@@ -91,6 +91,7 @@ class EpisodeWorld {
   Arrangement begun(const plan::EpisodeRecord& episode, std::vector<Pose> objects) const;
   world::WorldSpec spec_at(const Arrangement& at, bool with_robot_links) const;
   Result<Arrangement> settle(const Arrangement& placed);
+  Status check_settled(const world::World& world) const;
   Status check_arm() const;
   Status idle();
   Status move(const policy::Action& action);

@@ -120,6 +120,21 @@ std::string outcome_of(std::uint64_t number) {
   return go_through(*plan);
 }
 
+TEST_CASE("what still falls when the time to settle ends begins no episode") {
+  const auto outcome = [](double height) {
+    const auto bytes = run::TablePlan(kAssets).write(
+        1, 2, [&](plan::Records& records) { records.placements[0].position[2] = height; });
+    REQUIRE(bytes.ok());
+    const auto plan = plan::Plan::from_bytes(*bytes);
+    REQUIRE(plan.ok());
+    return go_through(*plan);
+  };
+  CHECK(outcome(1.5) == "ran");
+  const std::string high = outcome(40);
+  CHECK_MESSAGE(high.find("has not come to rest: it moves at ") != high.npos, high);
+  CHECK_MESSAGE(high.find(" m above the surface, when the time to settle ends") != high.npos, high);
+}
+
 constexpr ApartLimits kLimits{.memory = std::size_t{8} << 30, .cpu_s = 1200, .clock_s = 2400};
 
 TEST_CASE("a plan with other numbers is refused, or comes to its end the same way each time") {
