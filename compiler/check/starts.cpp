@@ -115,7 +115,7 @@ void check_starts(const Model& model, const AssetRoot& asset_root, Reporter& rep
       check_overlap(starts);
       if (!is_immediate) check_travel(starts, travels);
       // What lies beside the table is out of reach and out of view as well.
-      is_reached = check_surface(starts) && check_reach(starts, arms);
+      is_reached = check_surface(starts, travels) && check_reach(starts, arms);
       if (is_settled()) stands.insert({where, reporter.diagnostics.size() == before});
     }
     if (is_reached) check_frame(starts, lookouts);

@@ -50,6 +50,12 @@ class Travels {
       : model_(model), asset_root_(std::move(asset_root)) {}
   const std::optional<Travel>& of(const Scene& scene, FixtureId id);
   const std::vector<ArmLink>& arm(SceneId id);
+  // m: from the lowest to the highest of the surface and of all that stands in the scene, wherever
+  // its joints are; none where the shape of something is not known.
+  struct Heights {
+    double low = 0, high = 0;
+  };
+  std::optional<Heights> heights(const Scene& scene);
 
  private:
   const Model& model_;
@@ -117,7 +123,8 @@ scene::Solid solid_of(const TaskStarts& starts, const Start::Placed& placed);
 bool is_over_edge(const TaskStarts& starts, const Start::Placed& placed);
 
 void check_overlap(const TaskStarts& starts);            // P0501
-bool check_surface(const TaskStarts& starts);            // P0505; false when something was reported
+// P0505; false when something was reported.
+bool check_surface(const TaskStarts& starts, Travels& travels);
 bool check_reach(const TaskStarts& starts, Arms& arms);  // P0502; as above
 void check_frame(const TaskStarts& starts, Lookouts& lookouts);  // P0505 as a warning
 void check_travel(const TaskStarts& starts, Travels& travels);                        // P1302

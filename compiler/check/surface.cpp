@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "compiler/check/starts.h"
+#include "compiler/define/starts.h"
 #include "compiler/define/support.h"
 #include "compiler/geometry/footprint.h"
 #include "compiler/geometry/pose.h"
@@ -28,24 +29,41 @@ namespace {
 constexpr double kDeepest = 0.1;  // m
 constexpr double kHighest = 2.0;  // m
 
-// Where there are fixtures things may stand on what is lower or higher than the surface.
-bool check_heights(const TaskStarts& starts) {
+// Where there are fixtures things may stand on what is lower or higher than the surface: all that
+// can hold them counts.
+bool check_heights(const TaskStarts& starts, Travels& travels) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
-  if (scene.fixture || !scene.fixtures.empty()) return true;
+  const bool has_fixtures = scene.fixture || !scene.fixtures.empty();
+  std::optional<Travels::Heights> held;  // looked up once something is far from the surface
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
-    for (const Start::Placed& placed : starts.task.starts[e].placed) {
+    const Start& start = starts.task.starts[e];
+    for (const Start::Placed& placed : start.placed) {
       if (!placed.z) continue;
       const Object& object = starts.object(placed);
-      const double above = *placed.z + lowest(object, axes_of(placed.turn)) - scene.surface_z;
-      const bool is_below = above < -kDeepest;
-      if (!is_below && above <= kHighest) continue;
-      starts.reporter
-          .report(Situation::kOverEdge, starts.place({placed.object}),
-                  "`" + object.name + "` begins " + centimetres(std::abs(above)) +
-                      (is_below ? " below" : " above") + " the surface of `" + scene.name +
-                      "` in start " + std::to_string(e) + " of `" + starts.task.name + "`")
-          .label(starts.layout.span, "the layout")
-          .label(scene.span, "the surface is at " + centimetres(scene.surface_z))
+      const double bottom = *placed.z + lowest(object, axes_of(placed.turn));
+      const auto is_off = [&](double low, double high) {
+        return bottom < low - kDeepest || bottom > high + kHighest;
+      };
+      if (!is_off(scene.surface_z, scene.surface_z)) continue;
+      if (!held) held = travels.heights(scene);
+      if (!held) return true;
+      if (!is_off(held->low, held->high)) continue;
+      const bool is_below = bottom < held->low;
+      const GivenPlace* row =
+          row_of(starts.model, starts.layout, starts.task, start, placed.object);
+      const std::string far = centimetres(is_below ? held->low - bottom : bottom - held->high) +
+                              (is_below ? " below" : " above");
+      Diagnostic& said = starts.reporter.report(
+          Situation::kOverEdge, row == nullptr ? starts.place({placed.object}) : row->z_span,
+          "`" + object.name + "` begins " + far +
+              (has_fixtures ? " the surface and all that stands in `" : " the surface of `") +
+              scene.name + "` in start " + std::to_string(e) + " of `" + starts.task.name + "`");
+      said.label(starts.layout.span, "the layout")
+          .label(scene.span,
+                 "the surface is at " + centimetres(scene.surface_z) +
+                     (has_fixtures ? ", what stands there from " + centimetres(held->low) + " to " +
+                                         centimetres(held->high)
+                                   : ""))
           .help("`z_m` is the height of its model's origin above the floor, in metres")
           .cause = cause_of(starts.layout.span, {scene.name, object.name});
       return false;
@@ -56,8 +74,8 @@ bool check_heights(const TaskStarts& starts) {
 
 }  // namespace
 
-bool check_surface(const TaskStarts& starts) {
-  if (!check_heights(starts)) return false;
+bool check_surface(const TaskStarts& starts, Travels& travels) {
+  if (!check_heights(starts, travels)) return false;
   const Scene& scene = starts.model.scenes[starts.task.scene];
   // What is put into a fixture or onto another object stands on that.
   const std::vector<Put> puts = puts_of(starts.model, starts.task);

@@ -1,11 +1,14 @@
 // What checks of ways share: what each fixture fills, arms as scenes begin, fixtures as tasks do.
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "compiler/check/starts.h"
 #include "compiler/define/fixture.h"
 #include "compiler/geometry/footprint.h"
+#include "compiler/geometry/mesh_bounds.h"
 #include "compiler/geometry/pose.h"
+#include "runtime/base/file.h"
 #include "runtime/robot/kinematics.h"
 #include "runtime/scene/link_solids.h"
 
@@ -49,6 +52,28 @@ const std::vector<ArmLink>& Travels::arm(SceneId id) {
   const auto [known, is_new] = arms_.try_emplace(id);
   if (is_new) known->second = arm_of(model_, model_.scenes[id], asset_root_);
   return known->second;
+}
+
+std::optional<Travels::Heights> Travels::heights(const Scene& scene) {
+  Heights all{scene.surface_z, scene.surface_z};
+  const auto add = [&](double low, double high) {
+    all.low = std::min(all.low, low);
+    all.high = std::max(all.high, high);
+  };
+  for (const FixtureId id : scene.fixtures) {
+    const auto& travel = of(scene, id);
+    if (!travel) return std::nullopt;
+    for (const PartBox& box : travel->everywhere().all())
+      add(box.solid.centre.z() - box.half.z(), box.solid.centre.z() + box.half.z());
+  }
+  if (scene.fixture) {
+    const auto text =
+        read_file(asset_root_.file("fixtures/" + scene.fixture->text + "/collision.obj"));
+    const auto bounds = text ? bounds_of_obj(*text) : std::nullopt;
+    if (!bounds) return std::nullopt;
+    add(scene.fixture_position[2] + bounds->low[2], scene.fixture_position[2] + bounds->high[2]);
+  }
+  return all;
 }
 
 std::vector<BegunFixture> begun_fixtures(const TaskStarts& starts, Travels& travels) {

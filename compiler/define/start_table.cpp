@@ -264,6 +264,7 @@ class StartTable {
     if (at_[kZ]) {
       place.z = number(cells[*at_[kZ]], kZ);
       if (!place.z) return;
+      place.z_span = cells[*at_[kZ]].span;
     }
     if (at_[kQw]) {
       place.rotation = rotation(cells);

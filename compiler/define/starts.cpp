@@ -343,6 +343,15 @@ std::vector<Start> all_ways(const Model& model, const Layout& layout, const Task
 
 }  // namespace
 
+const GivenPlace* row_of(const Model& model, const Layout& layout, const Task& task,
+                         const Start& start, ObjectId id) {
+  if (start.given >= layout.given.size()) return nullptr;
+  for (const GivenPlace& place : layout.given[start.given]) {
+    if (is_row_of(model, task, place.what.text, id)) return &place;
+  }
+  return nullptr;
+}
+
 std::vector<Start> enumerate_starts(Supports& supports, const Model& model, const Layout& layout,
                                     const Task& task, std::size_t most,
                                     std::optional<LayoutProblem>& problem) {

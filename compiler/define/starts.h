@@ -28,6 +28,10 @@ std::vector<Start> enumerate_starts(Supports& supports, const Model& model, cons
                                     const Task& task, std::size_t most,
                                     std::optional<LayoutProblem>& problem);
 
+// A layout's table: the row that an object of a start of this task has in it; null where none is.
+const GivenPlace* row_of(const Model& model, const Layout& layout, const Task& task,
+                         const Start& start, ObjectId id);
+
 class Relations;
 // Of these, the starts in which the task's chosen phrases are clear.
 std::vector<Start> clear_starts(Relations& relations, const Model& model, const Task& task,

@@ -404,6 +404,7 @@ struct GivenPlace {
   Spelled what;  // a role that one object fills, or an object
   double x = 0, y = 0;
   std::optional<double> z;                        // of the model's origin; none: it is dropped
+  Span z_span = {};                               // its cell
   std::optional<std::array<double, 4>> rotation;  // unit (w, x, y, z); none: its first rest
   bool is_same(const GivenPlace& other) const {
     return what.text == other.what.text && x == other.x && y == other.y && z == other.z &&

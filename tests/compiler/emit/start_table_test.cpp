@@ -129,6 +129,7 @@ TEST_CASE("what a table has deep in the table top or far above it is told with h
   CHECK(with("3.5").find("above the surface of") != std::string::npos);
   CHECK(with("0.86").find("P0505") == std::string::npos);
   CHECK(with("1.4").find("P0505") == std::string::npos);
+  CHECK(with("3.5").find("starts.csv:2:") != std::string::npos);
 }
 
 TEST_CASE("heights keep things apart that stand over one another") {
@@ -375,6 +376,18 @@ TEST_CASE(
       "variant u of t { horizon 950 steps }\n");
   CHECK(text.find("in 1 of 3 starts") == std::string::npos);
   CHECK_MESSAGE(text.find("in 2 of 3 starts") == text.rfind("in 2 of 3 starts"), text);
+}
+
+TEST_CASE("where fixtures stand, what is far above or below all of them is told at its cell") {
+  const auto with = [](const std::string& z) {
+    return said("start,object,x_m,y_m,z_m\n0,carrot,-0.09,0.26," + z + "\n", kDrawer);
+  };
+  const std::string high = with("30");
+  CHECK_MESSAGE(high.find("starts.csv:2:21") != std::string::npos, high);
+  CHECK(high.find("above the surface and all that stands in") != std::string::npos);
+  CHECK(with("0.4").find("below the surface and all that stands in") != std::string::npos);
+  // Falls onto the cabinet.
+  CHECK(with("2.6").find("P0505") == std::string::npos);
 }
 
 TEST_CASE("what stands in a drawer in one start alone is found there") {
