@@ -22,6 +22,7 @@ constexpr double kAlongStep = 0.005;    // m, positions along the object
 constexpr double kAlongMost = 0.030;    // m to either side of its centre
 constexpr double kSideMargin = 0.0008;  // m, between each open finger and the object
 constexpr double kEasySide = 0.006;     // m, wider earns nothing more
+constexpr double kMiddle = 0.001;       // m to either side of the line in which fingers close
 constexpr double kNearest = 0.002;      // m, to another object
 constexpr double kComfortable = 0.02;   // m, farther away earns nothing more
 constexpr std::array kRimHeights{0.0030, 0.0036, 0.006, 0.010, 0.020, 0.030};  // m, of fingertips
@@ -220,6 +221,8 @@ std::vector<Grasp> grasp_candidates(const GraspProblem& problem) {
       const Slab slab{d.across, middle + along, g.finger_half};
       const Extent extent = extent_in_slab(source.parts, slab, d.close);
       if (extent.empty() || extent.width() > 2 * (g.opening_half - kSideMargin)) continue;
+      // What only a side of the fingers meets turns out of them when they close.
+      if (extent_in_slab(source.parts, {d.across, slab.at, kMiddle}, d.close).empty()) continue;
       const auto deep = g.turning.empty() ? std::optional(z) : depths.around(slab, d.close, extent);
       if (!deep) continue;
       const Vec2 xy = 0.5 * (extent.lower + extent.upper) * d.close + slab.at * d.across;

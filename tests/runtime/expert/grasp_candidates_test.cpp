@@ -58,6 +58,35 @@ TEST_CASE("of the two ways round the shorter turn comes first") {
   CHECK(std::abs(grasp_candidates(problem).front().yaw) < 0.1);
 }
 
+TEST_CASE(
+    "fingers close on what lies across their middle, not on a bulge that their sides alone meet") {
+  // A rounded bar along x. A slab over its end is narrow enough for the fingers everywhere.
+  std::vector<Vec3> bar;
+  for (const double z : {0.0, 0.026}) {
+    for (const double side : {1.0, -1.0}) {
+      bar.emplace_back(0.014, side * 0.011, z);
+      bar.emplace_back(-0.014, side * 0.011, z);
+      bar.emplace_back(side * 0.040, 0.004, z);
+      bar.emplace_back(side * 0.040, -0.004, z);
+    }
+  }
+  const Footprint source = footprint(test::object("bar", {bar}, {0, 0, test::kSurface}, 0));
+  GraspProblem problem = bare_problem();
+  problem.source = &source;
+  problem.surface = test::kSurface;
+  const auto grasps = grasp_candidates(problem);
+  REQUIRE(!grasps.empty());
+  for (const Grasp& grasp : grasps) {
+    const Vec3 across = grasp.tcp.rotation * Vec3::UnitZ(),
+               closing = grasp.tcp.rotation * Vec3::UnitY();
+    const Vec2 along(across.x(), across.y()), close(closing.x(), closing.y());
+    const Slab line{along, along.dot(grasp.tcp.position.head<2>()), 0.001};
+    CAPTURE(grasp.yaw);
+    CAPTURE(grasp.off_center);
+    CHECK_FALSE(extent_in_slab(source.parts, line, close).empty());
+  }
+}
+
 TEST_CASE("what is wider than the opening is not gripped") {
   const auto big = test::object("block", {test::block({-0.03, -0.03, 0}, {0.03, 0.03, 0.04})},
                                 {0, 0, test::kSurface}, 0);
