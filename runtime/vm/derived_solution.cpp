@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -62,8 +63,8 @@ class Deriver {
         success_(success),
         record_(plan.tasks()[task]),
         roles_(plan::roles_of(plan.tables(), record_)),
+        start_(start),
         still_(make_up_world(plan, task, start)),
-        mirrored_(make_up_world(plan, task, start, Spread::kBack)),
         joints_(plan::joints_of(plan.tables(), plan.scenes()[record_.scene])) {}
 
   Result<std::vector<plan::SkillRecord>> run() {
@@ -441,9 +442,9 @@ class Deriver {
   }
 
   Result<bool> holds_with(const Arranged& bundle, bool handled) const {
-    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
+    for (const Spread spread : kSpreads) {
       PROBE_ASSIGN(const bool is_success,
-                   judge_world(plan_, task_, success_, world_of(*still, bundle, handled)));
+                   judge_world(plan_, task_, success_, world_of(still(spread), bundle, handled)));
       if (!is_success) return false;
     }
     return true;
@@ -457,15 +458,15 @@ class Deriver {
 
   // The same of any metric: wherever things were made up to be, and anywhere.
   Result<bool> holds_in_all(std::uint32_t metric, std::span<const Arranged> stages) const {
-    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
-      PROBE_ASSIGN(const bool holds, holds_from(*still, metric, stages));
+    for (const Spread spread : kSpreads) {
+      PROBE_ASSIGN(const bool holds, holds_from(still(spread), metric, stages));
       if (!holds) return false;
     }
     return true;
   }
   Result<bool> holds_in_any(std::uint32_t metric, std::span<const Arranged> stages) const {
-    for (const MadeUpWorld* const still : {&still_, &mirrored_}) {
-      PROBE_ASSIGN(const bool holds, holds_from(*still, metric, stages));
+    for (const Spread spread : kSpreads) {
+      PROBE_ASSIGN(const bool holds, holds_from(still(spread), metric, stages));
       if (holds) return true;
     }
     return false;
@@ -475,6 +476,14 @@ class Deriver {
     std::vector<MadeUpWorld> worlds = {still};
     for (const Arranged& stage : stages) worlds.push_back(world_of(still, stage, false));
     return judge_worlds(plan_, task_, metric, std::move(worlds));
+  }
+
+  // The others are asked about what holds in the first alone.
+  const MadeUpWorld& still(Spread spread) const {
+    if (spread == Spread::kAlong) return still_;
+    auto& other = others_[spread == Spread::kBack ? 0 : 1];
+    if (!other) other = make_up_world(plan_, task_, start_, spread);
+    return *other;
   }
 
   MadeUpWorld world_of(const MadeUpWorld& still, const Arranged& bundle, bool handled) const {
@@ -579,7 +588,9 @@ class Deriver {
   const std::uint32_t task_, success_;
   const plan::TaskRecord& record_;
   const plan::TaskRoles roles_;
-  const MadeUpWorld still_, mirrored_;
+  const std::uint32_t start_;
+  const MadeUpWorld still_;
+  mutable std::array<std::optional<MadeUpWorld>, 2> others_;  // kBack, kNear, when asked for
   const std::vector<const plan::FixtureJointRecord*> joints_;
   std::vector<JointMove> moves_;
   std::vector<PutPlace> places_;

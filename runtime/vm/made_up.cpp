@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
+#include "runtime/base/trig.h"
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/moves.h"
 #include "runtime/plan/roles.h"
@@ -18,6 +20,9 @@ constexpr int kSteps = 8;
 constexpr double kMostGap = 2e-3;  // m: above what carries it, where a layout puts it
 constexpr double kFloor = 5e-3;    // m: of a hollow thing
 constexpr double kFar = 0.5;       // m: where objects stand that do not matter
+constexpr double kLow = 0.05;      // m: over the surface, of parts that are as low as that
+constexpr double kGap = 0.01;      // m: in the ring
+constexpr std::size_t kMostNear = 8;
 constexpr double kAlike = 0.01;    // m, rad: joints that begin alike, as far as one asks
 
 // Half extents with z the axis that is nearest the vertical in the pose, as a world gives them.
@@ -74,7 +79,33 @@ PlacedObject placed_object(std::uint16_t body, const plan::ObjectRecord& object,
   return out;
 }
 
+double half_diagonal(const BodyStart& body) { return body.half.head<2>().norm(); }
+
+// The ring about `middle`, by object: each a centimetre off it, the side along +y left free.
+std::vector<std::pair<std::size_t, Vec3>> ring_about(std::size_t middle,
+                                                     std::span<const std::size_t> objects,
+                                                     const MadeUpWorld& world) {
+  std::vector<std::pair<std::size_t, Vec3>> ring;
+  const std::size_t count = std::min(objects.size() - 1, kMostNear);
+  for (const std::size_t object : objects) {
+    if (object == middle || ring.size() == count) continue;
+    const double turn = 2 * std::numbers::pi * static_cast<double>(ring.size() + 1) /
+                        static_cast<double>(count + 1);
+    const SinCos t = portable_sincos(turn);
+    const double far =
+        half_diagonal(world.starts[middle]) + half_diagonal(world.starts[object]) + kGap;
+    ring.emplace_back(object, Vec3(-far * t.sin, far * t.cos, 0));
+  }
+  return ring;
+}
+
 }  // namespace
+
+Vec3 MadeUpWorld::free_side() const {
+  const double far = half_diagonal(starts[target]) + half_diagonal(starts[source]) + kGap;
+  const Vec3& about = sample.bodies[target].position;
+  return {about.x(), about.y() + far, sample.bodies[source].position.z()};
+}
 
 MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint32_t start,
                           Spread spread) {
@@ -99,6 +130,8 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
          plan::joint_starts_of(plan.tables(), plan.scenes()[record.scene], episodes[start]))
       world.sample.joints.push_back({position, 0});
   }
+  std::vector<std::size_t> objects;
+  double parts = 0;  // so far
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto kind = static_cast<plan::BodyKind>(bodies[i].kind);
     Vec3 at = {0, 0, table + kFar};
@@ -112,6 +145,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
       world.starts[i].half = half_extents(object, rotation);
       world.middles[i] = middle_of(object, rotation);
       at = world.mirrored({kFar * static_cast<double>(i), 0, table + world.starts[i].half.z()});
+      objects.push_back(i);
     } else if (kind == plan::BodyKind::kLink) {
       world.starts[i].opening = {0, 1, 0};
       if (bodies[i].index < fingers) world.fingers.push_back(static_cast<std::uint16_t>(i));
@@ -120,9 +154,24 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
     } else if (kind == plan::BodyKind::kPart) {
       // Apart, as regions of two parts may be one box in the parts' own frames.
       at = world.mirrored({0, -kFar * static_cast<double>(i), table + kFar});
+      if (spread == Spread::kBack) at.z() = table + kLow;
+      if (spread == Spread::kNear) at = {0, 0, table + kFar * ++parts};
     }
     world.starts[i].position = at;
     world.put(i, at);
+  }
+  if (spread == Spread::kNear && !objects.empty()) {
+    const std::size_t middle = roles.has_target() && roles.target < roles.objects ? roles.target
+                               : roles.has_source() && roles.source < roles.objects
+                                   ? roles.source
+                                   : objects.front();
+    const auto set = [&](std::size_t object, Vec3 at) {
+      at.z() = table + world.starts[object].half.z();
+      world.starts[object].position = at;
+      world.put(object, at);
+    };
+    set(middle, Vec3::Zero());
+    for (const auto& [object, at] : ring_about(middle, objects, world)) set(object, at);
   }
   for (const auto legs : plan::moves_of(plan.tables(), record)) {
     const auto body = static_cast<std::uint16_t>(legs.front().body);

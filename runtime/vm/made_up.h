@@ -16,12 +16,17 @@ namespace probe::vm {
 // N s: what a light object at rest presses in a substep.
 inline constexpr double kMadeUpContact = 0.01;
 
-// Along +x and -y, or the other way: what is true in the one and not in the other is true because
-// of where things were made up to be, as "left of" is, and says nothing of a real world.
-enum class Spread : std::uint8_t { kAlong, kBack };
+// Where things are made up to be: along +x and -y; the other way, parts of fixtures as low as the
+// surface; or close about the target. What is true in the one and not in another is true because of
+// that, as "left of", "higher than" and "far from" are, and says nothing of a real world.
+enum class Spread : std::uint8_t { kAlong, kBack, kNear };
+inline constexpr Spread kSpreads[] = {Spread::kAlong, Spread::kBack, Spread::kNear};
 
-// The task's bodies as a start turns them and joints of fixtures as it has them, half a metre from
-// one another and from the arm, parts of fixtures as well as objects; nothing touches.
+// The task's bodies as a start turns them and joints of fixtures as it has them; nothing touches.
+// They are half a metre from one another and from the arm, parts of fixtures as well as objects;
+// under kNear up to eight objects stand in a ring, a centimetre off the target (of a task without
+// one off the source, or else its first object), and parts are over it, half a metre one above the
+// other.
 struct MadeUpWorld {
   Spread spread = Spread::kAlong;
   std::vector<BodyStart> starts;
@@ -33,8 +38,10 @@ struct MadeUpWorld {
 
   // A step in the plane, mirrored where the world is.
   Vec3 mirrored(const Vec3& by) const {
-    return spread == Spread::kAlong ? by : Vec3(-by.x(), -by.y(), by.z());
+    return spread == Spread::kBack ? Vec3(-by.x(), -by.y(), by.z()) : by;
   }
+  // Under kNear: where the source has moved to when it is on the ring's side that is kept free.
+  Vec3 free_side() const;
   // `at`: the middle of its box. Its model's origin, which regions of its own count from, lies
   // where the model has it, as long as the object stands upright.
   void put(std::size_t body, const Vec3& at) {

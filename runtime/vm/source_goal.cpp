@@ -13,13 +13,14 @@ namespace {
 constexpr double kHeldAside = 0.2;    // m: far from the target
 constexpr double kHeldLifted = 0.12;  // m above where it stood
 
-constexpr Spread kSpreads[] = {Spread::kAlong, Spread::kBack};
-
 Result<bool> holds_held(const plan::Plan& plan, std::uint32_t task, std::uint32_t success,
                         std::uint32_t start, const Vec3& by) {
   for (const Spread spread : kSpreads) {
     MadeUpWorld world = make_up_world(plan, task, start, spread);
-    world.put(world.source, world.sample.bodies[world.source].position + world.mirrored(by));
+    const bool is_aside = by.head<2>().norm() > 0;
+    world.put(world.source, spread == Spread::kNear && is_aside
+                                ? world.free_side()
+                                : world.sample.bodies[world.source].position + world.mirrored(by));
     world.hold_source();
     PROBE_ASSIGN(const bool holds, judge_world(plan, task, success, std::move(world)));
     if (!holds) return false;

@@ -184,8 +184,14 @@ metrics left { success = at end (left_of(source, target) and let_go(source) and 
 metrics right { success = at end (right_of(source, target) and let_go(source) and displaced(source)) }
 task to_left like kept { scene drawers; metrics left; say "move {the source} to the left of {the target}" }
 task to_right like to_left { metrics right; say "move {the source} to the right of {the target}" }
+metrics far { success = at end (far_from(source, target) and let_go(source) and displaced(source)) }
+task off like to_left { metrics far; say "move {the source} far from {the target}" }
+metrics far_held { success = at end far_from(source, target) }
+task away like to_left { metrics far_held; say "move {the source} far from {the target}" }
+metrics high { success = at end (height(source) > height(target) + 25cm and let_go(source)) }
+task up like to_left { metrics high; say "put {the source} somewhere high" }
 )");
-  for (const char* const name : {"to_left", "to_right"}) {
+  for (const char* const name : {"to_left", "to_right", "off", "away", "up"}) {
     CAPTURE(name);
     const auto has = vm::has_skills(plan, *plan.find_task(name));
     REQUIRE(has.ok());
