@@ -146,18 +146,21 @@ std::optional<int> step_of(const EpisodeEvents& events, std::string_view name) {
   return std::nullopt;
 }
 
+// The subgoals are of a task's source and target: another role's way is told by none.
 void tell_times(EpisodeEvents& events, double hz) {
   const auto grasped = step_of(events, kGraspedSubgoal), placed = step_of(events, kPlacedSubgoal);
   const auto seconds = [&](int steps) { return static_cast<double>(steps) / hz; };
   if (!grasped) {
-    events.to_grasp.why_not = "the task has nothing to grasp";
+    events.to_grasp.why_not = "the task has no source, and the times are of that alone";
   } else if (*grasped == 0) {
     events.to_grasp.why_not = "never grasped";
   } else {
     events.to_grasp.value = seconds(*grasped);
   }
-  if (!grasped || !placed) {
-    events.hand_over.why_not = "the task places nothing";
+  if (!grasped) {
+    events.hand_over.why_not = events.to_grasp.why_not;
+  } else if (!placed) {
+    events.hand_over.why_not = "the task has no target to place it on";
   } else if (*grasped == 0) {
     events.hand_over.why_not = "never grasped";
   } else if (*placed == 0) {

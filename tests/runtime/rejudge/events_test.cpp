@@ -134,6 +134,20 @@ TEST_CASE("events are told with their steps and whose they are, subgoals in thei
   }
 }
 
+TEST_CASE("a time that a task cannot have says that it is of a source and a target alone") {
+  const plan::Plan stored = small();
+  Judging judging = grafted(stored);
+  const auto hand_over = [&] {
+    const auto events = events_of(judging.plan, 0, eventful(stored), judging.metrics);
+    REQUIRE_MESSAGE(events.ok(), probe::to_text(events.failure()));
+    return events->hand_over.why_not;
+  };
+  std::erase(judging.metrics.subgoals, "placed_it");
+  CHECK(hand_over() == "the task has no target to place it on");
+  std::erase(judging.metrics.subgoals, "grasped_it");
+  CHECK(hand_over() == "the task has no source, and the times are of that alone");
+}
+
 TEST_CASE("nothing is told of an invalid episode, and why stands in every form") {
   const plan::Plan stored = small();
   const Judging judging = grafted(stored);
