@@ -61,14 +61,13 @@ class Expert final : public policy::Policy {
     return {};
   }
 
-  void end(const policy::EpisodeEnd&) override {
+  void end(const policy::EpisodeEnd& end) override {
     if (!started_ || !options_.close || !lack_.empty()) return;
-    // The last one keeps still when it is done.
-    if (goes_under_ && under_.keeps() && skill_ + 1 == solution_.size()) return;
-    const bool is_over = solution_.empty() || (skill_ + 1 == solution_.size() && !moves_joint())
-                             ? hand_.is_over()
-                             : skill_ >= solution_.size();
-    if (!is_over) note("it was not done when the episode ended");
+    if (!is_all_done()) return note("it was not done when the episode ended");
+    // Then the solution is another than the goal, or something was moved that should not be.
+    if (end.success || options_.source != 0) return;
+    if (solution_.empty()) return note("it was done, and success is not so");
+    lack_ = "all skills were done, and success is not so";
   }
   std::optional<std::string> remark() const override {
     return lack_.empty() ? std::nullopt : std::optional(lack_);
@@ -95,7 +94,7 @@ class Expert final : public policy::Policy {
     // Nothing to do at all.
     if (!started_ && may_rest(observation)) return policy::Action{0, 0, 0, 0, 0, 0, kOpenGripper};
     PROBE_TRY(check(observation));
-    if (started_ && --until_decision_ > 0) {
+    if (started_ && !joint_actions_ && --until_decision_ > 0) {
       const policy::Proprioception& now = observation.proprioception;
       const auto q = std::span(now.joints).first(reach_->chain().joint_count());
       return servo_.next({reach_->chain().pose(q), now.joints, now.openness});
@@ -132,6 +131,15 @@ class Expert final : public policy::Policy {
     // What cannot be begun where the episode begins is not attempted, and no failed start.
     if (may_refuse && !lack_.empty()) return Failure{Fault::kNoSkill, lack_, ""};
     return action;
+  }
+
+  // When the episode ends.
+  bool is_all_done() const {
+    // The last one keeps still when it is done.
+    const bool is_last = skill_ + 1 == solution_.size();
+    if (goes_under_ && under_.keeps() && is_last) return true;
+    return solution_.empty() || (is_last && !moves_joint()) ? hand_.is_over()
+                                                            : skill_ >= solution_.size();
   }
 
   // What kept a skill from being done; the first is what the others follow from.

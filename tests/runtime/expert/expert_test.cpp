@@ -38,6 +38,19 @@ int play(test::FakeTable& table, policy::Policy& policy) {
 const std::vector<Vec2> kCells = {
     {-0.235, -0.075}, {-0.235, 0.075}, {-0.085, -0.075}, {-0.085, 0.075}};
 
+TEST_CASE("where all was done and success is not so, it says that, and of success nothing") {
+  for (const bool success : {true, false}) {
+    test::FakeTable table(test::carrot(kCells[0].x(), kCells[0].y(), 180),
+                          test::plate(kCells[3].x(), kCells[3].y()));
+    const auto policy = expert();
+    REQUIRE(play(table, *policy) > 0);
+    policy->end({true, success, 60});
+    const std::string remark = policy->remark().value_or("");
+    CHECK(remark ==
+          (success ? "" : "skill `put carrot on plate`: it was done, and success is not so"));
+  }
+}
+
 TEST_CASE("every ordered pair of cells and both orientations is solved with steps to spare") {
   int latest = 0;
   for (std::size_t from = 0; from < 4; ++from) {
