@@ -28,6 +28,7 @@ namespace {
 constexpr double kHandRoom =
     0.05;                  // m that the fingers may be wide, and a part go between two looks
 constexpr int kLooks = 8;  // at a joint's way
+constexpr double kDecisionRate = 5;  // a second, of arms that are told their joints
 constexpr double kFarther = 0.02;  // of a joint's way: less is open to its end
 
 class Expert final : public policy::Policy {
@@ -75,14 +76,21 @@ class Expert final : public policy::Policy {
 
   Result<policy::Action> act(const policy::Observation& observation) override {
     const bool is_first = !started_;
+    const std::vector<double>& joints = observation.proprioception.joints;
+    if (joint_actions_ && started_ && --until_decision_ > 0) return joint_actions_->go_on(joints);
     PROBE_ASSIGN(const policy::Action step, step_tool(observation));
     if (!joint_actions_) return step;
-    const std::vector<double>& joints = observation.proprioception.joints;
     if (is_first) joint_actions_->begin(joints);
     return joint_actions_->act(step.tool(), joints);
   }
 
  private:
+  // Control steps between decisions. Ways are planned for drives that have a fifth of a second to
+  // follow each step of them: what is told its joints gets that at any rate.
+  int interval() const {
+    if (!joint_actions_) return servo_.interval();
+    return std::max(1, static_cast<int>(std::lround(rate_ / kDecisionRate)));
+  }
   // What the tool shall do, in seven numbers.
   Result<policy::Action> step_tool(const policy::Observation& observation) {
     if (!started_ && observation.privileged != nullptr)
@@ -114,15 +122,14 @@ class Expert final : public policy::Policy {
       }
     }
     // Time passes in decisions.
-    until_decision_ = servo_.interval();
+    until_decision_ = interval();
     recent_.erase(recent_.begin());
     recent_.push_back(joints_of(scene, *reach_));
     // A source in the air hinders the arm no more than an empty hand.
     const bool touched =
         std::ranges::any_of(scene.fingers_on_source, [](bool touches) { return touches; });
     servo_.observe(arm, !moves_joint() && (!touched || hand_.carries()));
-    const Means means{view, *reach_, servo_, recent_,
-                      (horizon_ - observation.step) / servo_.interval()};
+    const Means means{view, *reach_, servo_, recent_, (horizon_ - observation.step) / interval()};
     const bool may_refuse = observation.step == 0 && options_.close && options_.source == 0;
     if (may_refuse) PROBE_TRY(check_reach(view));
     const policy::Action action =

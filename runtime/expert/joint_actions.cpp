@@ -28,9 +28,15 @@ void JointActions::begin(std::span<const double> joints) {
 
 Result<policy::Action> JointActions::act(const robot::ToolAction& step,
                                          std::span<const double> joints) {
-  PROBE_ASSIGN(const auto targets, tool_.targets(step, joints));
+  PROBE_TRY(tool_.targets(step, joints));
+  gripper_ = step[robot::kActionGripper];
+  return go_on(joints);
+}
+
+policy::Action JointActions::go_on(std::span<const double> joints) {
+  const std::span<const double> targets = tool_.last();
   policy::Action action = policy::Action::zeros(told_.size() + 1);
-  action.gripper() = step[robot::kActionGripper];
+  action.gripper() = gripper_;
   for (std::size_t i = 0; i < told_.size(); ++i) {
     const double from = are_positions_ ? 0 : law_.from_target ? told_[i] : joints[i];
     const double way = targets[i] - from;

@@ -47,6 +47,34 @@ TEST_CASE("the expert puts things where they belong by positions and by steps of
   }
 }
 
+TEST_CASE("at twenty steps a second soft drives and steps of joints get time to follow, too") {
+  const plan::Plan plan = run::plan_of_text(R"(use "suite/panda.probe"
+robot soft like panda { control joint_position 20Hz
+  drive joint1, joint2, joint3, joint4 stiffness 800Nm/rad damping 100Nms/rad limit 87Nm
+  drive joint5, joint6, joint7 stiffness 400Nm/rad damping 40Nms/rad limit 12Nm
+  drive finger_joint1, finger_joint2 stiffness 1000N/m damping 100Ns/m limit 20N
+  grip 0cm .. 4cm friction 2 patch 1cm }
+robot stepped like soft { control joint_delta 20Hz { from target; most 0.1rad }
+  drive joint1, joint2, joint3, joint4, joint5, joint6, joint7 stiffness 4000Nm/rad damping 400Nms/rad limit 200Nm }
+robot measured like soft { control joint_delta 20Hz { from measured; most 0.1rad } }
+scene a like panda_table { robot soft; physics 500Hz friction 1 }
+scene b like panda_table { robot stepped; physics 500Hz friction 1 }
+scene c like panda_table { robot measured; physics 500Hz friction 1 }
+task told like panda_carrot_on_plate { scene a }
+task added like panda_carrot_on_plate { scene b }
+task from_it like panda_carrot_on_plate { scene c }
+suite mine { tasks { told, added, from_it }; seeds 0 }
+)");
+  for (const char* task : {"told", "added", "from_it"}) {
+    CAPTURE(task);
+    const auto stage = open(plan, task);
+    for (const std::uint32_t start : {0, 1, 6, 11}) {
+      CAPTURE(start);
+      CHECK(solves(*stage, plan, start));
+    }
+  }
+}
+
 TEST_CASE("an action of another number than the law's is refused by name") {
   const auto stage = open(example(), "told_carrot_on_plate");
   need(stage->reset(0));
