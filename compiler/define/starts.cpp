@@ -596,7 +596,11 @@ bool is_told_by_numbers(const Model& model, const Task& task) {
 
 void define_starts(Context& context) {
   Model& model = context.model;
-  std::map<std::vector<double>, const std::vector<Start>*> known;
+  struct Listed {
+    const std::vector<Start>* starts = nullptr;
+    std::size_t of = 0;
+  };
+  std::map<std::vector<double>, Listed> known;
   std::set<LayoutId> incomplete_layouts;  // that lack a place: said once
   std::set<std::vector<double>> unclear;  // starts that no phrase is clear in: said once
   Relations relations(model, context.asset_root, context.diagnostics);
@@ -606,8 +610,8 @@ void define_starts(Context& context) {
     if (task.abstract || !task.complete) continue;
     const About about(context.reporter, task.decl_span);
     const std::vector<double> made_of = starts_key(model, task);
-    const std::vector<Start>*& starts = known[made_of];
-    if (starts == nullptr) {
+    Listed& listed = known[made_of];
+    if (listed.starts == nullptr) {
       const Layout& layout = model.layouts[task.layout];
       std::optional<LayoutProblem> problem;
       // Where nothing but what is declared, and by number, says where things are.
@@ -630,6 +634,7 @@ void define_starts(Context& context) {
         report_problem(context, task, *problem);
         continue;
       }
+      listed.of = found.size();
       if (!task.clear.empty()) {
         std::vector<Start> clear = clear_starts(relations, model, task, found);
         if (clear.empty()) {
@@ -640,9 +645,10 @@ void define_starts(Context& context) {
         }
         found = std::move(clear);
       }
-      starts = &model.start_lists.emplace_back(std::move(found));
+      listed.starts = &model.start_lists.emplace_back(std::move(found));
     }
-    task.starts = *starts;
+    task.starts = *listed.starts;
+    task.layout_starts = listed.of;
     episodes += task.starts.size();
     if (episodes <= kMaxEpisodes) continue;
     context.report(Situation::kTooManyEpisodes, task.span,

@@ -109,6 +109,15 @@ std::vector<ReferringWords> referring_words(const sema::Model& model) {
   return all;
 }
 
+std::vector<ChosenStarts> chosen_starts(const sema::Model& model) {
+  std::vector<ChosenStarts> all;
+  for (const sema::Task& task : model.tasks) {
+    if (task.abstract || task.clear.empty() || task.starts.empty()) continue;
+    all.push_back({task.name, task.starts.size(), task.layout_starts});
+  }
+  return all;
+}
+
 Status analyze(std::span<const std::string> files, const CompileOptions& options, Analyzed& out) {
   if (files.empty()) return Failure{Fault::kUsage, "no file to compile", ""};
   for (const std::string& file : files) {
@@ -134,6 +143,7 @@ Status analyze(std::span<const std::string> files, const CompileOptions& options
                             out.compilation.diagnostics, named, {.stop = options.stop});
   out.compilation.unused_phrases = unused_phrases(out.model);
   out.compilation.referring = referring_words(out.model);
+  out.compilation.chosen = chosen_starts(out.model);
   for (const sema::Object& object : out.model.objects)
     out.compilation.called.emplace(object.name, object.text.text);
   sema::Callings callings(out.model);
@@ -258,6 +268,7 @@ void merge(Compilation&& program, Compilation& all) {
   all.unused_phrases.insert(all.unused_phrases.end(), program.unused_phrases.begin(),
                             program.unused_phrases.end());
   all.referring.insert(all.referring.end(), program.referring.begin(), program.referring.end());
+  all.chosen.insert(all.chosen.end(), program.chosen.begin(), program.chosen.end());
   all.called.merge(program.called);
   all.tasks += program.tasks;
   all.starts += program.starts;

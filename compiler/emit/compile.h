@@ -59,6 +59,12 @@ struct UnheldWords {
   std::string task, words, why;
 };
 
+// A task that takes some of its layout's starts, those in which phrases are clear.
+struct ChosenStarts {
+  std::string task;
+  std::size_t starts = 0, of = 0;
+};
+
 struct Compilation {
   SourceSet sources;
   Diagnostics diagnostics;
@@ -70,6 +76,7 @@ struct Compilation {
   // "object.phrase" of the objects of some task by which no concrete task refers.
   std::vector<std::string> unused_phrases = {};
   std::vector<ReferringWords> referring;  // of every concrete task, source before target
+  std::vector<ChosenStarts> chosen;       // of every concrete task with `where clear`
   std::vector<UnheldWords> unheld;        // of every concrete task, where it was asked for
   // What the objects are called when no phrase is chosen, by name.
   std::map<std::string, std::string> called;

@@ -610,6 +610,7 @@ struct Task {
   std::uint32_t ood = 0;
   std::vector<Metric> judged;     // the metrics it is judged by, in order
   std::span<const Start> starts;  // in Model::start_lists; equal tasks share one
+  std::size_t layout_starts = 0;  // how many its layout has; `clear` keeps some of them
 
   // Rows of Model::objects below this are objects, the others parts and regions of fixtures.
   std::uint32_t declared_objects = 0xffffffffu;

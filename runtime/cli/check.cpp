@@ -74,15 +74,33 @@ std::vector<std::string> without_skills(const plan::Plan& plan) {
   return names;
 }
 
+// "`a`, `b` and 3 more".
+std::string named(const std::vector<std::string>& tasks) {
+  std::string list;
+  for (std::size_t i = 0; i < tasks.size() && i < kMostTasksNamed; ++i)
+    list += (i == 0 ? "`" : ", `") + tasks[i] + "`";
+  if (tasks.size() > kMostTasksNamed)
+    list += fmt::format(" and {} more", tasks.size() - kMostTasksNamed);
+  return list;
+}
+
 void say_without_skills(const std::vector<std::string>& names, std::size_t tasks) {
   if (names.empty()) return;
-  std::string list;
-  for (std::size_t i = 0; i < names.size() && i < kMostTasksNamed; ++i)
-    list += (i == 0 ? "`" : ", `") + names[i] + "`";
-  if (names.size() > kMostTasksNamed)
-    list += fmt::format(" and {} more", names.size() - kMostTasksNamed);
   say("note: policy `expert` finds no skills for {} of {}: {}; `solution {{ .. }}` says how\n",
-      digit_groups(names.size()), counted(tasks, "task"), list);
+      digit_groups(names.size()), counted(tasks, "task"), named(names));
+}
+
+// A line for tasks that keep as many of as many.
+void say_chosen(const std::vector<ChosenStarts>& chosen) {
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::string>> tasks;
+  for (const ChosenStarts& task : chosen) {
+    auto& names = tasks[{task.starts, task.of}];
+    if (std::ranges::find(names, task.task) == names.end()) names.push_back(task.task);
+  }
+  for (const auto& [kept, names] : tasks) {
+    say("note: `where clear` keeps {} of {} in {}\n", digit_groups(kept.first),
+        counted(kept.second, "start"), named(names));
+  }
 }
 
 using Clock = std::chrono::steady_clock;
@@ -146,6 +164,7 @@ int check_verb(const CheckArguments& arguments) {
   const CompiledText text =
       compile_text(arguments.files, arguments.assets, "", false, arguments.json, false, plans);
   if (!text.files.empty()) say_outcome(text, milliseconds_since(start));
+  if (text.exit == kFine && !arguments.json) say_chosen(text.chosen);
   if (text.exit == kFine) say_without_skills(names, text.tasks);
   return text.exit;
 }

@@ -43,6 +43,7 @@ CompiledText compile_quietly(const std::vector<std::string>& files, const AssetO
   text.plan = std::move(compiled->plan);
   text.unused_phrases = std::move(compiled->unused_phrases);
   text.referring = std::move(compiled->referring);
+  text.chosen = std::move(compiled->chosen);
   text.own_suites = std::move(compiled->own_suites);
   text.asset_root = std::move(compiled->asset_root);
   text.tasks = compiled->tasks;

@@ -21,6 +21,7 @@ struct CompiledText {
   std::vector<std::string> files;    // every file that was read, as it was found
   std::vector<std::string> unused_phrases;
   std::vector<ReferringWords> referring;
+  std::vector<ChosenStarts> chosen;
   AssetRoot asset_root;                 // where files were looked for
   std::size_t tasks = 0, starts = 0;    // that were looked at
   std::vector<std::string> own_suites;  // declared by the named files, not by those they use

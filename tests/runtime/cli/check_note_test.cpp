@@ -1,4 +1,4 @@
-// What `check` says of the expert beside what is wrong with a text.
+// What `check` says of starts and of the expert beside what is wrong with a text.
 #include <doctest/doctest.h>
 
 #include "tests/runtime/cli/program.h"
@@ -50,4 +50,15 @@ TEST_CASE("check says nothing of skills while a text has mistakes") {
   const Outcome some = box.vlaprobe("check raised.probe");
   CHECK(some.exit == 1);
   CHECK_FALSE(contains(some.err, "finds no skills"));
+}
+
+TEST_CASE("check says how many starts `where clear` keeps of how many, in which tasks") {
+  const Sandbox box;
+  const Outcome said = box.vlaprobe("check '" VLAPROBE_SOURCE_DIR "/examples/spatial.probe'");
+  CHECK_MESSAGE(said.exit == 0, said.err);
+  CHECK_MESSAGE(contains(said.err,
+                         "note: `where clear` keeps 12 of 24 starts in `left_can_named`, "
+                         "`left_can_on_the_left`\n"),
+                said.err);
+  CHECK_FALSE(contains(box.vlaprobe("check $SUITE").err, "where clear"));
 }
