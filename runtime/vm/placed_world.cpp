@@ -1,6 +1,7 @@
 #include "runtime/vm/placed_world.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "runtime/plan/regions.h"
@@ -12,6 +13,14 @@ namespace {
 constexpr double kInner = 5e-3;    // m: of a hollow thing
 constexpr double kAside = 0.001;   // m: from one thing to the next in one place
 constexpr double kBeside = 0.015;  // m: between the boxes of what lies beside one another
+
+// Several things beside one stand on its sides in turn: on one side, a thing would be between that
+// and a larger one, whatever the real world has.
+Vec3 side_of(double along) {
+  constexpr std::array<std::array<double, 2>, 4> kSides = {{{0, 1}, {1, 0}, {0, -1}, {-1, 0}}};
+  const auto& [x, y] = kSides[static_cast<std::size_t>(along) % kSides.size()];
+  return {x, y, 0};
+}
 
 // `above` presses `below`, whichever has the lower number.
 void touch(std::uint32_t above, std::uint32_t below, MadeUpWorld* world) {
@@ -37,7 +46,7 @@ void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t 
     const Vec3& to = world->sample.bodies[below].position;
     if (place.relation == plan::SkillRelation::kBeside) {
       const double apart = half.head<2>().norm() + half_below.head<2>().norm() + kBeside;
-      at = to + world->mirrored({0, apart, half.z() - half_below.z()});
+      at = to + world->mirrored(apart * side_of(along) + Vec3(0, 0, half.z() - half_below.z()));
       below = world->surface;
     } else {
       // In a hollow thing it lies on the floor.

@@ -17,7 +17,8 @@ struct PutPlace {
 };
 
 // Moves an object of the task there and has it pressed by nothing but what carries it. What is put
-// there before lies `along` mm aside: rules look at each alone.
+// there before lies `along` mm aside, as rules look at each alone; beside a thing, on its next
+// side.
 void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t object,
             const PutPlace& place, double along, MadeUpWorld* world);
 

@@ -190,8 +190,18 @@ metrics far_held { success = at end far_from(source, target) }
 task away like to_left { metrics far_held; say "move {the source} far from {the target}" }
 metrics high { success = at end (height(source) > height(target) + 25cm and let_go(source)) }
 task up like to_left { metrics high; say "put {the source} somewhere high" }
+metrics behind { success = at end (behind(source, target) and let_go(source) and displaced(source)) }
+task to_back like to_left { metrics behind; say "move {the source} behind {the target}" }
+role other
+layout three { cells c = grid 1 x 3 at (-20cm, 0cm) spread (0cm, 13cm)
+  place source, target in distinct c; place other at (-4cm, 0cm)
+  orient by rest; drop 30cm settle 0.5s }
+metrics amid { success = at end between(source, target, other) }
+task to_middle like to_left { layout three; source green_cube; other towel; metrics amid
+  say "put {the source} between {the target} and {the other}" }
 )");
-  for (const char* const name : {"to_left", "to_right", "off", "away", "up"}) {
+  for (const char* const name :
+       {"to_left", "to_right", "off", "away", "up", "to_back", "to_middle"}) {
     CAPTURE(name);
     const auto has = vm::has_skills(plan, *plan.find_task(name));
     REQUIRE(has.ok());
