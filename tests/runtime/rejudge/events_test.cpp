@@ -134,6 +134,23 @@ TEST_CASE("events are told with their steps and whose they are, subgoals in thei
   }
 }
 
+TEST_CASE("what is taken down from where it began is over the goal while it is held above that") {
+  const plan::Plan stored = small();
+  const Judging judging = grafted(stored);
+  store::Trace trace = eventful(stored);
+  trace.start->starts[kCarrot].position = {0, 0, 1.2};
+  for (std::size_t i = 0; i < trace.steps.size(); ++i) {
+    vm::StepSample& s = trace.steps[i].sample;
+    if (i < 11) s.bodies[kCarrot].position = {0, 0, i < 9 ? 1.2 : 1.22};
+    if (i >= 11 && i < 19) s.bodies[kCarrot].position = {0.3, 0, 1.0};
+    s.tcp = s.bodies[kCarrot].position;
+  }
+  const auto events = events_of(judging.plan, 0, trace, judging.metrics);
+  REQUIRE_MESSAGE(events.ok(), probe::to_text(events.failure()));
+  CHECK_MESSAGE(events->last == "over_goal", to_text(events->marks));
+  CHECK(events->reached == 4);
+}
+
 TEST_CASE("a time that a task cannot have says that it is of a source and a target alone") {
   const plan::Plan stored = small();
   Judging judging = grafted(stored);
