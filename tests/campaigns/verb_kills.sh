@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # tests/campaigns/verb_kills.sh [KILLS] [VLAPROBE]: kills `run`, `sweep`, `merge` and `export` (a table, a dataset) in turn
 # at random moments, KILLS times (200). What a kill leaves is looked at, then the same command runs to its end:
-#   run, sweep, merge   the folder is read, or nothing is there yet; in the end the rows of a calm one and no half files
+#   run, sweep, merge   the folder is read, or no run is there yet; in the end the rows of a calm one and no half files
 #   export              the file is not there or whole; a dataset's folder is said to be half, or whole; in the end equal bytes
 # Exit 0: nothing else was seen.
 set -eu
@@ -44,7 +44,7 @@ look() { # VERB OUTPUT: what a kill left is read
     run | merge | sweep)
       for folder in "$2" "$2"/0.*; do
         [ -e "$folder/results.sqlite" ] || continue
-        "$vlaprobe" results "$folder" >look 2>&1 || grep -q 'no episodes\|begin' look || wrong "$1" "its folder is not read"
+        "$vlaprobe" results "$folder" >look 2>&1 || grep -q 'no run here\|no episodes' look || wrong "$1" "its folder is not read"
       done
       ;;
     table) [ ! -e "$2.h5" ] || cmp -s "$2.h5" calm.table.h5 || wrong "$1" "a half file has its name" ;;
