@@ -114,7 +114,12 @@ struct Magnitudes {
     check(stmt.most, kReach, "the reach of an arm");
   }
   void operator()(const syntax::ControlStmt& stmt) { check(stmt.rate, kControl, "a control rate"); }
-  void operator()(const syntax::GripStmt& stmt) { check(stmt.open, kGrip, "a finger's way"); }
+  void operator()(const syntax::GripStmt& stmt) {
+    const auto open = make_quantity(stmt.open.digits, to_text(stmt.open.unit));
+    // Fingers that turn have angles.
+    if (open && open->dimension == dim::kAngle) return angle(stmt.open);
+    check(stmt.open, kGrip, "a finger's way");
+  }
   void operator()(const syntax::MountStmt& stmt) { point(stmt.at, kHeight, "a camera's place"); }
   void operator()(const syntax::SceneRobotStmt& stmt) {
     if (!stmt.at) return;

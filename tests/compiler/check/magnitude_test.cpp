@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <filesystem>
+
 #include "tests/compiler/small_suite.h"
 
 using namespace probe;
@@ -41,4 +43,22 @@ TEST_CASE("a density in grams, a turn in radians and a focal length in metres ar
   CHECK(analyze_with_suite("object o like red { friction 50 }")->codes() == "P0303");
   CHECK(analyze_with_suite("layout l like pairs { orient source yaw 45deg, yaw 2deg }")->codes() ==
         "");
+}
+
+TEST_CASE("fingers that turn open by an angle, which is no way of 34 m") {
+  std::string text = test::arm_urdf();
+  for (std::size_t at; (at = text.find("prismatic")) != std::string::npos;)
+    text.replace(at, 9, "revolute");
+  test::write_text(std::filesystem::path(test::asset_root()) / "arm/turning.urdf", text);
+  const auto said = [](const std::string& grip) {
+    return analyze_with_suite(
+               "robot odd like arm { urdf \"arm/turning.urdf\"\n"
+               "drive l, r stiffness 30Nm/rad damping 2Nms/rad limit 4Nm\n" +
+               grip + " friction 2 patch 1cm }")
+        ->said();
+  };
+  CHECK(said("grip 0deg .. 34deg") == "");
+  CHECK(said("grip 0rad .. 0.6rad") == "");
+  CHECK(said("grip 0deg .. 0.6deg") == "");
+  CHECK(said("grip 0rad .. 34rad").find("did you mean `34deg`?") != std::string::npos);
 }
