@@ -41,7 +41,7 @@ class Fit {
   }
 
   void check() {
-    if (!all_driven() || !all_used() || !in_order() || !points_apart()) return;
+    if (!all_driven() || !all_used() || !fingers_move() || !in_order() || !points_apart()) return;
     // What is left is told in the words of whoever would fail.
     const robot::EeControlSpec spec{robot_.tcp.text, arm_, fingers_, robot_.grip_closed,
                                     robot_.grip_open};
@@ -127,6 +127,29 @@ class Fit {
             "actions say where the tool goes and how wide the gripper is: make the joint "
             "`fixed` in the description, or name its link in `fingers`");
       }
+      return false;
+    }
+    return true;
+  }
+
+  // A jaw that is fixed to the hand is no finger: nothing opens it.
+  bool fingers_move() {
+    for (const Finger& finger : robot_.fingers) {
+      const std::string joint = drive_of(finger);
+      if (has(driven_, joint)) continue;
+      Names moved;
+      for (const Finger& other : robot_.fingers) {
+        if (has(driven_, drive_of(other))) moved.push_back(other.link.text);
+      }
+      Diagnostic& said = context_.report(
+          Situation::kStillFinger, finger.link.span,
+          joint.empty() ? fmt::format("no joint moves finger `{}`", finger.link.text)
+                        : fmt::format("no drive moves finger `{}`: joint `{}` is fixed",
+                                      finger.link.text, joint));
+      said.label(robot_.urdf.span, "described here");
+      said.help(moved.empty()
+                    ? "name in `fingers` the links that drives open"
+                    : fmt::format("name in `fingers` those that move alone: `{}`", listed(moved)));
       return false;
     }
     return true;

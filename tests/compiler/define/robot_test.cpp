@@ -113,6 +113,22 @@ TEST_CASE("a copy without fingers has no grip either, unless it says one") {
   CHECK_MESSAGE(gripping->codes() == "P1003", gripping->said());
 }
 
+TEST_CASE("a jaw that is fixed is no finger, and the message says which are") {
+  std::string text = probe::test::arm_urdf();
+  const std::string moves = "<joint name=\"r\" type=\"prismatic\"";
+  text.replace(text.find(moves), moves.size(), "<joint name=\"r\" type=\"fixed\"");
+  probe::test::write_text(std::filesystem::path(probe::test::asset_root()) / "arm/jaw.urdf", text);
+  const std::string urdf = "robot odd like arm { urdf \"arm/jaw.urdf\"";
+  const auto fixed = analyze_with_suite(urdf + "; fingers left opens +y, right opens -y }");
+  CHECK_MESSAGE(fixed->codes() == "P1004", fixed->said());
+  CHECK(fixed->underlined() == "right");
+  CHECK(fixed->said().find("no drive moves finger `right`: joint `r` is fixed") !=
+        std::string::npos);
+  CHECK(fixed->said().find("name in `fingers` those that move alone: `left`") != std::string::npos);
+  const auto one = analyze_with_suite(urdf + "; fingers left opens +y }");
+  CHECK_MESSAGE(one->codes() == "", one->said());
+}
+
 TEST_CASE("a copy with another hand has the drives of its own joints alone, and says them") {
   const std::string root = probe::test::asset_root();
   std::string text = probe::test::arm_urdf();
