@@ -10,6 +10,7 @@
 #include "compiler/check/unclear_starts.h"
 #include "compiler/define/in_start.h"
 #include "compiler/define/likeness.h"
+#include "compiler/define/query.h"
 #include "compiler/define/remembered.h"
 #include "compiler/define/task.h"
 #include "compiler/define/telling.h"
@@ -73,10 +74,13 @@ struct TaskLanguage {
     const Denotation meant = denote(model, objects, phrase, wanted_id);
     if (!meant.fits) {
       if (!unfit.insert({&phrase, wanted_id}).second) return silence.hold_back();
-      reporter
-          .report(Code::P0401, place(role),
-                  quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`")
-          .label(phrase.text.span, "means `" + phrase.means_text + "`");
+      Diagnostic& diagnostic =
+          reporter.report(Code::P0401, place(role),
+                          quoted + " does not denote `" + wanted.name + "` in `" + task.name + "`");
+      diagnostic.label(phrase.text.span, "means `" + phrase.means_text + "`");
+      const std::string lack =
+          lack_of(model, phrase.means, wanted, [](const QueryOp&) { return Truth::kUnknown; });
+      if (!lack.empty()) diagnostic.note(lack);
       return;
     }
     const bool is_sure = !meant.sure.empty();
@@ -141,7 +145,10 @@ struct TaskLanguage {
         return;
       }
     }
-    const Denotation meant = InStart(relations, task, task.starts[start]).denote(phrase, wanted);
+    const InStart in_start(relations, task, task.starts[start]);
+    const Denotation meant = in_start.denote(phrase, wanted);
+    const std::string lack = in_start.lack(phrase, wanted);
+    if (!lack.empty()) diagnostic.note(lack);
     std::string names;
     for (const ObjectId id : meant.sure)
       names += (names.empty() ? "`" : ", `") + model.objects[id].name + "`";

@@ -237,4 +237,18 @@ Denotation InStart::denote(const Phrase& phrase, ObjectId wanted) const {
   return found;
 }
 
+std::string InStart::lack(const Phrase& phrase, ObjectId wanted) const {
+  const Model& model = relations_.model_;
+  const auto at = std::ranges::find(scenery_.things, wanted);
+  if (at == scenery_.things.end()) return {};
+  const std::uint16_t body =
+      scenery_.bodies[static_cast<std::size_t>(at - scenery_.things.begin())];
+  const Alike alike = alike_of(model, scenery_, phrase);
+  // Where it stands among those alike is not asked of what is none of them.
+  const bool is_alike = std::ranges::find(alike.all, body) != alike.all.end();
+  return lack_of(model, phrase.means, model.objects[wanted], [&](const QueryOp& op) {
+    return is_alike ? holds(op, body, alike) : Truth::kUnknown;
+  });
+}
+
 }  // namespace probe::sema

@@ -78,6 +78,8 @@ class InStart {
 
   // As `denote` does, of where things are as well.
   Denotation denote(const Phrase& phrase, ObjectId wanted) const;
+  // What keeps the phrase from describing the object here, in words; empty where it is not known.
+  std::string lack(const Phrase& phrase, ObjectId wanted) const;
 
  private:
   Truth holds(const QueryOp& op, std::uint16_t described, const Alike& alike) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "compiler/define/attribute.h"
 
@@ -175,6 +176,83 @@ Truth evaluate(const Query& query, const Object& object,
     }
   }
   return stack.empty() ? Truth::kUnknown : stack.back();
+}
+
+std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Object& object,
+                              const std::function<Truth(const QueryOp&)>& placed) {
+  std::vector<std::vector<Wanted>> stack;
+  const auto pop = [&stack] {
+    std::vector<Wanted> top = std::move(stack.back());
+    stack.pop_back();
+    return top;
+  };
+  // Several as one.
+  const auto joined = [](const std::vector<Wanted>& all) {
+    Wanted one{{}, Truth::kYes};
+    for (const Wanted& piece : all) {
+      one.text += (one.text.empty() ? "" : " and ") + piece.text;
+      one.truth = std::min(one.truth, piece.truth);
+    }
+    if (all.size() > 1) one.text = "(" + one.text + ")";
+    return one;
+  };
+  for (const QueryOp& op : query) {
+    switch (op.kind) {
+      case QueryOp::kFact:
+        stack.push_back({{model.facts[op.a], object.facts[op.a]}});
+        break;
+      case QueryOp::kValue: {
+        const Attribute& attribute = model.attributes[static_cast<AttributeId>(op.a)];
+        stack.push_back(
+            {{attribute.name + " " + attribute.values[op.b], has_value(object, op.a, op.b)}});
+        break;
+      }
+      case QueryOp::kRelation: {
+        std::string text = model.predicates[static_cast<PredicateId>(op.a)].name;
+        std::string to;
+        for (const ObjectId other : op.to) {
+          if (other != ObjectId::kNone) to += (to.empty() ? "" : ", ") + model.objects[other].name;
+        }
+        if (!to.empty()) text += "(" + to + ")";
+        stack.push_back({{text, placed(op)}});
+        break;
+      }
+      case QueryOp::kNot: {
+        const Wanted one = joined(pop());
+        stack.push_back({{"not " + one.text, negate(one.truth)}});
+        break;
+      }
+      case QueryOp::kAnd: {
+        const std::vector<Wanted> right = pop();
+        stack.back().insert(stack.back().end(), right.begin(), right.end());
+        break;
+      }
+      case QueryOp::kOr: {
+        const Wanted right = joined(pop()), left = joined(pop());
+        stack.push_back(
+            {{"(" + left.text + " or " + right.text + ")", std::max(left.truth, right.truth)}});
+        break;
+      }
+    }
+  }
+  return stack.empty() ? std::vector<Wanted>() : std::move(stack.back());
+}
+
+std::string lack_of(const Model& model, const Query& query, const Object& object,
+                    const std::function<Truth(const QueryOp&)>& placed) {
+  std::string lacks, has;
+  for (const Wanted& piece : wanted_of(model, query, object, placed)) {
+    if (piece.truth != Truth::kNo) continue;
+    lacks += (lacks.empty() ? "`" : ", `") + piece.text + "`";
+    for (std::size_t a = 0; a < object.values.size(); ++a) {
+      const Attribute& attribute = model.attributes[static_cast<AttributeId>(a)];
+      if (!piece.text.starts_with(attribute.name + " ") || object.values[a].empty()) continue;
+      has += (has.empty() ? ", whose " : ", ") + attribute.name + " is ";
+      for (std::size_t i = 0; i < object.values[a].size(); ++i)
+        has += (i == 0 ? "" : " and ") + attribute.values[object.values[a][i]];
+    }
+  }
+  return lacks.empty() ? std::string() : lacks + " is not so of `" + object.name + "`" + has;
 }
 
 }  // namespace probe::sema

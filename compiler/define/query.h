@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "compiler/names/context.h"
 
@@ -19,5 +21,18 @@ std::size_t objects_of(const syntax::PredicateDecl& relation);
 Truth evaluate(const Query& query, const Object& object);
 Truth evaluate(const Query& query, const Object& object,
                const std::function<Truth(const QueryOp&)>& placed);
+
+// What a query wants, piece by piece as it is joined by `and`, and whether each is so of the
+// object.
+struct Wanted {
+  std::string text;  // "category toy", "not heavy", "between plate, towel"
+  Truth truth = Truth::kUnknown;
+};
+std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Object& object,
+                              const std::function<Truth(const QueryOp&)>& placed);
+// Those that keep it from being described, and what the object has instead: "`category toy` is not
+// so of `cube_a`, whose category is block"; empty where none is known.
+std::string lack_of(const Model& model, const Query& query, const Object& object,
+                    const std::function<Truth(const QueryOp&)>& placed);
 
 }  // namespace probe::sema
