@@ -540,7 +540,40 @@ class Auditor {
     });
   }
 
-  // Of another suite, or of declared tasks none of which is looked at.
+  // The names of the tasks that are looked at and of all that these copy: what is said of a copied
+  // statement has its place where that is written.
+  const std::set<std::string>& copied() {
+    if (!copied_.empty()) return copied_;
+    std::multimap<std::string, std::string> from;  // by the copy
+    for (std::uint32_t i = 0; i < compilation_.sources.size(); ++i) {
+      for (const syntax::Decl& decl : declarations(FileId{i})) {
+        if (const auto* const task = std::get_if<syntax::TaskDecl>(&decl.node)) {
+          if (task->like) from.emplace(task->name.text, task->like->text);
+        } else if (const auto* const variant = std::get_if<syntax::VariantDecl>(&decl.node)) {
+          from.emplace(variant->name.text, variant->of.text);
+        } else if (const auto* const variants = std::get_if<syntax::VariantsDecl>(&decl.node)) {
+          for (const syntax::VariantsMember& member : variants->members)
+            from.emplace(member.name.text, variants->of.text);
+        }
+      }
+    }
+    std::vector<std::string> left;
+    for (const std::uint32_t task : scope_) left.push_back(name_of(task));
+    while (!left.empty()) {
+      const std::string name = std::move(left.back());
+      left.pop_back();
+      if (!copied_.insert(name).second) continue;
+      const auto [begin, end] = from.equal_range(name);
+      for (auto it = begin; it != end; ++it) left.push_back(it->second);
+      // What is derived has its baseline in the plan alone.
+      const auto task = plan_.find_task(name);
+      if (task && plan_.tasks()[*task].baseline != plan::kNone)
+        left.push_back(name_of(plan_.tasks()[*task].baseline));
+    }
+    return copied_;
+  }
+
+  // Of another suite, or of declared tasks none of which is looked at or copied by one that is.
   bool is_of_others(const Diagnostic& said) {
     const auto in_suite = [&](bool of_this) {
       return is_in_suite(said.primary, of_this) ||
@@ -552,7 +585,7 @@ class Auditor {
       if (!is_within(said.primary, decl.span)) continue;
       const std::vector<std::uint32_t> tasks = tasks_in(decl.span);
       return !tasks.empty() && std::ranges::none_of(tasks, [&](std::uint32_t task) {
-        return std::ranges::find(scope_, task) != scope_.end();
+        return copied().contains(name_of(task));
       });
     }
     return false;
@@ -609,6 +642,7 @@ class Auditor {
   std::vector<std::uint32_t> scope_;  // tasks: the suite's, then those that no suite holds
   std::map<std::pair<Kind, std::pair<std::uint32_t, std::uint32_t>>, std::size_t> rules_;
   std::map<std::uint32_t, syntax::ParseResult> parsed_;  // by FileId
+  std::set<std::string> copied_;                         // see there
   Audit audit_;
 };
 

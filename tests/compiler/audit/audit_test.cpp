@@ -108,6 +108,24 @@ TEST_CASE("a warning of another suite is none of this one") {
   CHECK(cuts(audit_text(drawn + own)) == 1);
 }
 
+TEST_CASE("a warning of what a task copies from one that the suite leaves out is the suite's") {
+  const std::string tasks =
+      "task base like carrot_on_plate { say \"put the left carrot on {the target}\" }\n"
+      "variant longer of base { horizon 40s }\n"
+      "task copy like base { horizon 41s }\n";
+  const auto said = [&](const std::string& task) {
+    const Audited audited = audit_text(tasks + "suite own { tasks { " + task + " }; seeds 0 }\n");
+    return std::ranges::any_of(audited.audit.findings, [&](const audit::Finding& finding) {
+      return finding.code == "unproved_place" &&
+             finding.message.find("`" + task + "`") != std::string::npos;
+    });
+  };
+  for (const char* task : {"base", "longer", "copy"}) {
+    CAPTURE(task);
+    CHECK(said(task));
+  }
+}
+
 TEST_CASE("a solution that does not do what success asks for is found, with what would") {
   const Audited suite = audit_text(R"(
 use "std/fixtures.probe"
