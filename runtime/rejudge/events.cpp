@@ -180,7 +180,7 @@ Result<EpisodeEvents> events_of(const plan::Plan& plan, std::uint32_t task,
   EpisodeEvents untold;
   if (score.invalid || !trace.start) {
     const std::string why = score.invalid.value_or("it never began");
-    untold.untold = (why.starts_with(store::kNotAttempted) ? "" : "invalid: ") + why;
+    untold.untold = (store::is_not_attempted(why) ? "" : "invalid: ") + why;
     return untold;
   }
   PROBE_ASSIGN(EpisodeEvents out, Watch(plan, task, metrics).run(trace, score.steps.size()));

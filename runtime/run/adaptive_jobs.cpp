@@ -149,7 +149,7 @@ std::vector<adaptive::Planned> planned_of(std::span<const EpisodeJob> jobs,
   for (const store::StoredEpisode& one : stored) {
     if (one.valid) {
       ended[one.key] = one.success ? adaptive::Outcome::kSuccess : adaptive::Outcome::kFailure;
-    } else if (one.why.starts_with(store::kNotAttempted)) {
+    } else if (store::is_not_attempted(one.why)) {
       ended[one.key] = adaptive::Outcome::kNotAttempted;
     }
   }

@@ -94,7 +94,7 @@ std::set<EpisodeKey> drop_stored(const plan::Plan& plan,
   std::size_t again = 0;
   for (const store::StoredEpisode& episode : stored) {
     if (!chosen.contains(episode.key)) continue;
-    if (episode.valid || episode.why.starts_with(store::kNotAttempted)) {
+    if (episode.valid || store::is_not_attempted(episode.why)) {
       valid.insert(episode.key);
     } else if (++again <= kToldOneByOne) {
       summary.notes.push_back(to_text(episode.key) +
@@ -436,7 +436,7 @@ Result<RunSummary> run(const plan::Plan& plan, const RunOptions& asked) {
   const auto stored = drop_stored(plan, stored_rows, options.until.has_value(), selection.jobs, summary);
   std::set<EpisodeKey> known_before;  // of whoever chooses on
   for (const store::StoredEpisode& episode : stored_rows) {
-    if (options.next && (episode.valid || episode.why.starts_with(store::kNotAttempted)))
+    if (options.next && (episode.valid || store::is_not_attempted(episode.why)))
       known_before.insert(episode.key);
   }
   std::optional<AdaptiveJobs> adaptive_jobs;

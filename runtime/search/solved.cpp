@@ -66,7 +66,7 @@ void Solved::keep(const PlannedPoints& planned, const store::ResultRow& row) {
     question.start = point->starts[static_cast<std::size_t>(row.episode)];
   }
   const std::optional<bool> success = success_of(row);
-  const bool no_skill = row.invalid && row.invalid->starts_with(store::kNotAttempted);
+  const bool no_skill = store::is_not_attempted(row);
   // A world that does not settle as the text says is no fair start either.
   known_[key_of(planned, question)] = success.value_or(false) ? Answer::kYes
                                       : no_skill              ? Answer::kNoSkill

@@ -14,8 +14,9 @@ constexpr std::size_t kMostTold = 3, kLongest = 300;  // reasons; characters of 
 
 }  // namespace
 
+bool is_not_attempted(std::string_view invalid) { return invalid.starts_with(kNotAttempted); }
 bool is_not_attempted(const ResultRow& row) {
-  return row.invalid && row.invalid->starts_with(kNotAttempted);
+  return row.invalid && is_not_attempted(*row.invalid);
 }
 
 bool is_open(const ResultRow& row) { return row.invalid && !is_not_attempted(row); }

@@ -106,8 +106,7 @@ int why_verb(const WhyArguments& arguments) {
   }
   put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
   if (why->invalid)
-    put("{}{}\n",
-        why->invalid->starts_with(store::kNotAttempted) ? "" : "invalid: ", *why->invalid);
+    put("{}{}\n", store::is_not_attempted(*why->invalid) ? "" : "invalid: ", *why->invalid);
   if (why->remark) put("the policy says: {}\n", shown(*why->remark));
   for (const rejudge::ClaimWhy& claim : why->claims) {
     std::string denoted;
@@ -117,8 +116,7 @@ int why_verb(const WhyArguments& arguments) {
         denoted.empty() ? "nothing" : denoted);
   }
   // Of what was not attempted there is nothing to judge.
-  if (why->steps == 0 && why->invalid && why->invalid->starts_with(store::kNotAttempted))
-    return kFine;
+  if (why->steps == 0 && why->invalid && store::is_not_attempted(*why->invalid)) return kFine;
   for (const rejudge::MetricWhy& metric : why->metrics) {
     put("\n");
     print_metric(metric);

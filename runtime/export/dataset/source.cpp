@@ -218,8 +218,8 @@ Result<Source> open_source(const std::string& dir, const DatasetOptions& options
     left_out.push_back(fmt::format("what `{}` does not have yet: it is being written now", dir));
   for (const auto& [why, of] : invalid)
     left_out.push_back(fmt::format("{} of `{}`, {} the first: {}{}", counted(of.first), dir,
-                                   of.second,
-                                   why.starts_with(store::kNotAttempted) ? "" : "invalid, ", why));
+                                   of.second, store::is_not_attempted(why) ? "" : "invalid, ",
+                                   why));
   for (const auto& [why, count] : late)
     left_out.push_back(fmt::format("{} of `{}`: {}", counted(count), dir, why));
   if (again > 0)
