@@ -7,16 +7,6 @@
 
 namespace probe::sema {
 
-namespace {
-
-// Counted from the first camera or the robot's base.
-bool is_of_frame(Measure measure) {
-  return measure == Measure::kViewX || measure == Measure::kViewY || measure == Measure::kRobotX ||
-         measure == Measure::kRobotY;
-}
-
-}  // namespace
-
 std::string type_name(const Type& type) {
   switch (type.kind) {
     case TypeKind::kPoison:

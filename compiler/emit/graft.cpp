@@ -37,13 +37,10 @@ struct FrameFinder {
     return is_pair && (reads_set(set.left) || reads_set(set.right));
   }
   bool reads(sema::ExprRef ref) {
-    using sema::ExprOp, sema::Measure;
+    using sema::ExprOp;
     if (!seen.insert(ref).second) return false;
     const sema::ExprNode& node = model.exprs.nodes[ref];
-    if (node.op == ExprOp::kMeasure &&
-        (node.measure == Measure::kViewX || node.measure == Measure::kViewY ||
-         node.measure == Measure::kRobotX || node.measure == Measure::kRobotY))
-      return true;
+    if (node.op == ExprOp::kMeasure && sema::is_of_frame(node.measure)) return true;
     const bool has_set =
         node.op == ExprOp::kAny || node.op == ExprOp::kAll || node.op == ExprOp::kNo;
     return (has_set && reads_set(node.set)) ||

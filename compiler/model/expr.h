@@ -28,6 +28,11 @@ enum class Measure : std::uint8_t {
 #define PROBE_MEASURE(id, name, params, result, length, time, angle, mass, of_start, meaning) id,
 #include "compiler/model/measures.def"
 };
+// Whether it is counted from the first camera or the robot's base.
+constexpr bool is_of_frame(Measure measure) {
+  return measure == Measure::kViewX || measure == Measure::kViewY || measure == Measure::kRobotX ||
+         measure == Measure::kRobotY;
+}
 
 using ExprRef = std::uint32_t;
 inline constexpr ExprRef kNoExpr = 0xffffffffu;
@@ -108,7 +113,7 @@ struct ExprArena {
   std::vector<ExprNode> nodes;
   std::vector<SetNode> sets;
   std::vector<Quantity> quantities;
-  bool needs_frame = false;    // something is measured from the first camera or the robot's base
+  bool needs_frame = false;    // a measure of some expression is_of_frame
   bool names_objects = false;  // some expression names an object or a fixture
   std::vector<std::string> names;
 };
