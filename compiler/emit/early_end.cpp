@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compiler/model/same.h"
+#include "compiler/names/allow.h"
 #include "runtime/plan/plan.h"
 #include "runtime/plan/readouts.h"
 #include "runtime/plan/skills.h"
@@ -73,8 +74,8 @@ Asked asked_of(const plan::Plan& plan, std::uint32_t task) {
   return {record.program, record.scene, std::move(said), std::move(kinds)};
 }
 
-void report(const plan::Plan& plan, const Task& task, const vm::EarlyEnd& early,
-            Diagnostics& diagnostics) {
+Diagnostic& report(const plan::Plan& plan, const Task& task, const vm::EarlyEnd& early,
+                   Diagnostics& diagnostics) {
   const Metric& success = *metric_of(task, "success");
   const Metric& ends = *metric_of(task, plan::kEndsMetric);
   std::string where;
@@ -87,7 +88,7 @@ void report(const plan::Plan& plan, const Task& task, const vm::EarlyEnd& early,
                              " still to be done" + where);
   said.label(ends.span, "the episode is over here");
   if (!(success.span == task.place(success.span))) said.label(success.span, "judged by this");
-  said.help(
+  return said.help(
       "a `success` that is replaced keeps the `ends when` that came with it: write `ends when ..` "
       "anew, by what success asks");
 }
@@ -108,9 +109,11 @@ Status note_early_ends(const sema::Model& model, const std::vector<std::byte>& b
   if (written.empty()) return {};
   PROBE_ASSIGN(const plan::Plan plan, plan::Plan::from_bytes(bytes, {.identity = false}));
   std::map<Asked, std::optional<vm::EarlyEnd>> known;
-  // By place: what was said of the first of its tasks, and of how many others it is so.
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>> places;
-  Diagnostics found;
+  struct Said {
+    Diagnostic* of_first = nullptr;
+    std::size_t more = 0;  // tasks
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Said> places;
   for (std::uint32_t index = 0; index < plan.tasks().size(); ++index) {
     const auto task = written.find(plan.text(plan.tasks()[index].name));
     if (task == written.end()) continue;
@@ -120,21 +123,15 @@ Status note_early_ends(const sema::Model& model, const std::vector<std::byte>& b
     }
     if (!at->second) continue;
     const Span& place = task->second->place(metric_of(*task->second, "success")->span);
-    const auto [said, is_first] =
-        places.try_emplace({place.file.value, place.begin}, found.size(), 0);
-    if (is_first) {
-      report(plan, *task->second, *at->second, found);
+    Said& said = places[{place.file.value, place.begin}];
+    if (said.of_first == nullptr) {
+      said.of_first = &report(plan, *task->second, *at->second, diagnostics);
     } else {
-      ++said->second.second;
+      ++said.more;
     }
   }
-  for (std::size_t i = 0; i < found.items().size(); ++i) {
-    Diagnostic& said = diagnostics.add(found.items()[i]);
-    for (const auto& [place, one] : places) {
-      if (one.first != i || one.second == 0) continue;
-      said.note("the same holds for " + std::to_string(one.second) + " more task" +
-                (one.second == 1 ? "" : "s"));
-    }
+  for (const auto& [place, said] : places) {
+    if (said.more > 0) sema::note_more(*said.of_first, said.more);
   }
   return {};
 }

@@ -67,6 +67,10 @@ bool is_in_derive(const Context& context, const Span& span) {
 
 }  // namespace
 
+void note_more(Diagnostic& said, std::size_t tasks) {
+  said.note("the same holds for " + std::to_string(tasks) + " more task" + (tasks == 1 ? "" : "s"));
+}
+
 void check_allows(const std::vector<const syntax::File*>& files, Diagnostics& diagnostics) {
   std::vector<std::string_view> words;
   for (const Code code : all_codes()) {
@@ -139,10 +143,6 @@ void say(const Context& context, std::span<const FileId> roots, bool lacks_names
     if (place.count == 0 && is_in_derive(context, span)) place.limit = 1;
     if (++place.count <= place.limit) place.last = &out.add(diagnostic);
   }
-  const auto note_more = [](Diagnostic& last, std::size_t tasks) {
-    last.note("the same holds for " + std::to_string(tasks) + " more task" +
-              (tasks == 1 ? "" : "s"));
-  };
   for (auto& [key, place] : places) {
     if (place.count > place.limit) note_more(*place.last, place.count - place.limit);
   }
