@@ -1,6 +1,7 @@
 #include "compiler/define/query.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -178,6 +179,16 @@ Truth evaluate(const Query& query, const Object& object,
   return stack.empty() ? Truth::kUnknown : stack.back();
 }
 
+namespace {
+
+// A piece of a query, and whether it is so of an object.
+struct Wanted {
+  std::string text;  // "category toy", "not heavy", "between(plate, towel)"
+  Truth truth = Truth::kUnknown;
+  std::optional<AttributeId> attribute = {};  // whose value it is
+};
+
+// The pieces that `and` joins.
 std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Object& object,
                               const std::function<Truth(const QueryOp&)>& placed) {
   std::vector<std::vector<Wanted>> stack;
@@ -202,9 +213,10 @@ std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Obje
         stack.push_back({{model.facts[op.a], object.facts[op.a]}});
         break;
       case QueryOp::kValue: {
-        const Attribute& attribute = model.attributes[static_cast<AttributeId>(op.a)];
+        const auto id = static_cast<AttributeId>(op.a);
+        const Attribute& attribute = model.attributes[id];
         stack.push_back(
-            {{attribute.name + " " + attribute.values[op.b], has_value(object, op.a, op.b)}});
+            {{attribute.name + " " + attribute.values[op.b], has_value(object, op.a, op.b), id}});
         break;
       }
       case QueryOp::kRelation: {
@@ -238,18 +250,20 @@ std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Obje
   return stack.empty() ? std::vector<Wanted>() : std::move(stack.back());
 }
 
+}  // namespace
+
 std::string lack_of(const Model& model, const Query& query, const Object& object,
                     const std::function<Truth(const QueryOp&)>& placed) {
   std::string lacks, has;
   for (const Wanted& piece : wanted_of(model, query, object, placed)) {
     if (piece.truth != Truth::kNo) continue;
     lacks += (lacks.empty() ? "`" : ", `") + piece.text + "`";
-    for (std::size_t a = 0; a < object.values.size(); ++a) {
-      const Attribute& attribute = model.attributes[static_cast<AttributeId>(a)];
-      if (!piece.text.starts_with(attribute.name + " ") || object.values[a].empty()) continue;
-      has += (has.empty() ? ", whose " : ", ") + attribute.name + " is ";
-      for (std::size_t i = 0; i < object.values[a].size(); ++i)
-        has += (i == 0 ? "" : " and ") + attribute.values[object.values[a][i]];
+    if (!piece.attribute) continue;
+    const Attribute& attribute = model.attributes[*piece.attribute];
+    const auto& values = object.values[static_cast<std::size_t>(*piece.attribute)];
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (i == 0) has += (has.empty() ? ", whose " : ", ") + attribute.name + " is ";
+      has += (i == 0 ? "" : " and ") + attribute.values[values[i]];
     }
   }
   return lacks.empty() ? std::string() : lacks + " is not so of `" + object.name + "`" + has;

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "compiler/names/context.h"
 
@@ -22,16 +21,9 @@ Truth evaluate(const Query& query, const Object& object);
 Truth evaluate(const Query& query, const Object& object,
                const std::function<Truth(const QueryOp&)>& placed);
 
-// What a query wants, piece by piece as it is joined by `and`, and whether each is so of the
-// object.
-struct Wanted {
-  std::string text;  // "category toy", "not heavy", "between plate, towel"
-  Truth truth = Truth::kUnknown;
-};
-std::vector<Wanted> wanted_of(const Model& model, const Query& query, const Object& object,
-                              const std::function<Truth(const QueryOp&)>& placed);
-// Those that keep it from being described, and what the object has instead: "`category toy` is not
-// so of `cube_a`, whose category is block"; empty where none is known.
+// Of what a query joins by `and`, what keeps it from describing the object, and what that has
+// instead: "`category toy` is not so of `cube_a`, whose category is block"; empty where none is
+// known.
 std::string lack_of(const Model& model, const Query& query, const Object& object,
                     const std::function<Truth(const QueryOp&)>& placed);
 
