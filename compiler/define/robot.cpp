@@ -311,7 +311,7 @@ void drop_copied_drives(const Span& own, std::vector<WrittenDrive>& drives, Robo
     const int joint = robot.model->find_joint(drive.joint.text);
     const bool is_gone = joint < 0 || robot.model->joints[static_cast<std::size_t>(joint)].kind ==
                                           robot::JointKind::kFixed;
-    if (is_gone) robot.left_drives.push_back(drive.joint);
+    if (is_gone) robot.dropped_drives.push_back(drive.joint);
     return is_gone;
   });
 }

@@ -86,8 +86,8 @@ class Fit {
       said.label(robot_.urdf.span, "described here")
           .help(fmt::format("write `drive {} ...`, or make it `fixed` in the description",
                             joint.name));
-      for (const Spelled& left : robot_.left_drives)
-        said.label(left.span, fmt::format("`{}` is no joint that moves there", left.text));
+      for (const Spelled& drive : robot_.dropped_drives)
+        said.label(drive.span, fmt::format("`{}` is no joint that moves there", drive.text));
       return false;
     }
     return true;

@@ -202,7 +202,8 @@ struct Robot {
   robot::Law law;  // its numbers, but for those of drives and the range of the fingers
   double reach_min = 0, reach_max = 0;
   std::vector<Drive> drives;
-  std::vector<Spelled> left_drives;  // copied ones, whose joints its own description lacks or fixes
+  std::vector<Spelled>
+      dropped_drives;  // copied ones, whose joints its own description lacks or fixes
   double grip_closed = 0, grip_open = 0;
   bool grip_turns = false;  // they are angles
   double finger_friction = 1, finger_patch = 0;
