@@ -10,8 +10,7 @@ namespace probe::make {
 // objects/<name>/visual.glb and collision.obj, each.
 std::vector<OutputFile> make_apple();
 std::vector<OutputFile> make_baked_cans();  // of coke, pepsi and 7up
-std::vector<OutputFile>
-make_baked_goods();  // of apple, again as released twice, slim can, long sponge
+std::vector<OutputFile> make_baked_goods();  // of apple (the release has two), slim can, sponge
 std::vector<OutputFile> make_basket();
 std::vector<OutputFile> make_bottle();
 std::vector<OutputFile> make_bowl();

@@ -42,7 +42,7 @@ Colour texel_for(const Colour& lit, double gain, double specular);
 // The same as a linear albedo.
 Colour albedo_for(const Colour& lit, double gain, double specular);
 
-// Every pixel shows so much of its light.
+// Every pixel shows `factor` of its light.
 void dim(Image& image, double factor);
 
 // Diffuse gains of the table's light (ambient 0.3; suns (0,0,-1) 2.2, (-1,-0.5,-1) 0.7, (1,1,-1)

@@ -28,7 +28,7 @@ std::vector<Start> enumerate_starts(Supports& supports, const Model& model, cons
                                     const Task& task, std::size_t most,
                                     std::optional<LayoutProblem>& problem);
 
-// A layout's table: the row that an object of a start of this task has in it; null where none is.
+// The row of a layout's table that places an object in a start of this task; null where none does.
 const GivenPlace* row_of(const Model& model, const Layout& layout, const Task& task,
                          const Start& start, ObjectId id);
 

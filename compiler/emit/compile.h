@@ -86,8 +86,8 @@ struct Compilation {
 };
 
 // In: paths. Out: sources, diagnostics and, from build(), the verified bytes of a plan. The order:
-// load and parse what the files reach (syntax), analyze() (check/analyze.h), then emit() when that
-// found no error.
+// load and parse what the files reach (syntax), analyze() (check/analyze.h), emit() when that found
+// no error, then what the judge finds in the plan (emit/early_end.h), which check() drops.
 //
 // Diagnoses the files and everything they use. Each file that no other named one uses is a program
 // of its own, so two of them may declare the same names; of files that use each other, each is one

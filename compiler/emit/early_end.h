@@ -1,5 +1,5 @@
-// P0608, of a plan that was made: what ends an episode of a task before success can be true, found
-// by the judge in made-up worlds.
+// P0608: an `ends when` that ends an episode before its success can be true, which the judge finds
+// in made-up worlds once the plan is there.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,12 @@
 
 namespace probe::emit {
 
-// Whether some task has an `ends when` that may hold without its success, so that the plan has to
-// be asked.
+// Whether some task has an `ends when` that may hold without its success: only then is there
+// anything to ask the judge.
 bool may_end_early(const sema::Model& model);
 
-// `plan`: the bytes of a plan of the model's tasks, or of some of them.
+// `plan`: the bytes of a plan of the model's tasks, or of some of them. One warning a place, with
+// the number of other tasks of which the same holds. Fails where the plan is not read.
 Status note_early_ends(const sema::Model& model, const std::vector<std::byte>& plan,
                        Diagnostics& diagnostics);
 

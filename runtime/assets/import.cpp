@@ -130,7 +130,7 @@ class Import {
     if (seen.empty() && !is_unseen) {
       return miss(name, id + " has no textured.glb, .gltf, .dae, .obj or .stl");
     }
-    // The same bytes in the release; a copy of it may hold equal files once.
+    // In the release both meshes are the same bytes, and a copy of it may keep only one of them.
     const auto plain = data_.models.find(felt_as);
     const bool from_plain = felt.empty() && plain != data_.models.end();
     if (from_plain) felt = find_mesh(plain->second, "collision");

@@ -90,7 +90,7 @@ void say_without_skills(const std::vector<std::string>& names, std::size_t tasks
       digit_groups(names.size()), counted(tasks, "task"), named(names));
 }
 
-// A line for tasks that keep as many of as many.
+// One line for all tasks that keep the same number of the same number of starts.
 void say_chosen(const std::vector<ChosenStarts>& chosen) {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::string>> tasks;
   for (const ChosenStarts& task : chosen) {

@@ -67,7 +67,7 @@ Status search_boundary(Hunt& hunt);
 // A shard of it is a search of its own: other draws and seeds, and its part of the error.
 Status search_worst(Hunt& hunt);
 inline constexpr int kMostWorstShards = 40;
-// Whether a case of a `worst`, as search.json has it, is.
+// Whether a case of a `worst`, as search.json has it, is confirmed.
 bool is_confirmed(const Json& one);
 // What a `worst` found, in words: a sentence a case, and what they come to. `cases` are as
 // search.json has them, `own` are the failures of the task itself among `trials` of all.

@@ -13,7 +13,7 @@ namespace probe::store {
 // How `invalid` begins in their rows; the reason follows.
 inline constexpr std::string_view kNotAttempted = "not attempted: ";
 bool is_not_attempted(const ResultRow& row);
-bool is_not_attempted(std::string_view invalid);
+bool is_not_attempted(std::string_view invalid);  // what a row has there
 // Whether doing the episode again could change the row: it is neither valid nor not attempted.
 bool is_open(const ResultRow& row);
 

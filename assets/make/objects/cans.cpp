@@ -1,6 +1,6 @@
 // Drink cans, 3.3 cm across and 6.15 cm tall, along local y, lid at +y. The labels are invented:
-// COLA on red with a white wave, FIZZ on blue in a white ring; ALOE on green, with its light baked
-// in alone.
+// COLA on red with a white wave, FIZZ on blue in a white ring; ALOE on green, of which there is
+// only one with its light baked in.
 #include <cmath>
 
 #include "assets/make/generators.h"

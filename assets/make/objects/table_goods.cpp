@@ -46,6 +46,7 @@ std::vector<OutputFile> standing(const std::string& name, const std::vector<Band
   std::vector<Surface*> all;
   for (Surface& surface : surfaces) all.push_back(&surface);
   fit_to_box(all, box_of(size));
+  // The hull has the plain thing's name: what is felt is equal to the byte.
   const std::string felt = name.substr(is_baked ? std::string_view("baked_").size() : 0);
   std::vector<Part> parts;
   for (std::size_t i = 0; i < bands.size(); ++i) {
