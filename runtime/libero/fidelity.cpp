@@ -119,10 +119,12 @@ Result<std::vector<FidelityRow>> measure_fidelity(const FidelityOptions& options
                                 lacks("reference/*_t0_geometry.npz")));
   }
   if (records && has_files(*records, "_t10_agentview.png")) {
-    PROBE_ASSIGN(rows.emplace_back(), pictures_row(imported, *records, options.sheets));
+    PROBE_ASSIGN(const auto pictures, pictures_rows(imported, *records, options.sheets));
+    rows.insert(rows.end(), pictures.begin(), pictures.end());
   } else {
-    rows.push_back(not_measured("pictures", "6 levels each, 3 in the median",
-                                lacks("reference/*_t10_agentview.png")));
+    for (const char* what : {"pictures of recorded states", "first pictures of a policy"})
+      rows.push_back(not_measured(what, "6 levels each, 3 in the median",
+                                  lacks("reference/*_t10_agentview.png")));
   }
   return rows;
 }

@@ -58,15 +58,12 @@ Result<FidelityRow> torques_row(Imported& imported, const Records& records);
 Result<std::vector<FidelityRow>> steps_rows(Imported& imported, const Records& records);
 // libero_settled.npz.
 Result<FidelityRow> settling_row(Imported& imported, const Records& records, std::size_t starts);
-// What a task's cameras see of its first start as it is stored, before the waiting steps; valid
-// until the stage draws again.
-Result<std::span<const stage::CameraFrame>> first_frames(const plan::Plan& plan,
-                                                         stage::Stage& stage);
 // reference/*_t0_geometry.npz: which geom each pixel shows before the waiting steps.
 Result<FidelityRow> masks_row(Imported& imported, const Records& records);
-// reference/*_t10_agentview.png and _wrist.png: the first pictures that a policy gets. With
-// `sheets` a PNG each there: theirs, ours, and four times what differs.
-Result<FidelityRow> pictures_row(Imported& imported, const Records& records,
-                                 const std::string& sheets);
+// reference/*_t10_agentview.png and _wrist.png, in two rows: drawn in the recorded states, and as a
+// policy first gets them, behind our own waiting steps. With `sheets` PNGs there: theirs, ours, and
+// four times what differs, TASK_CAMERA.png in the recorded states, TASK_CAMERA_first.png.
+Result<std::vector<FidelityRow>> pictures_rows(Imported& imported, const Records& records,
+                                               const std::string& sheets);
 
 }  // namespace probe::libero

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "runtime/libero/fidelity.h"
+#include "runtime/libero/recorded_view.h"
 #include "runtime/libero/zip.h"
-#include "runtime/plan/fixtures.h"
 #include "runtime/wire/npy.h"
 
 namespace probe::libero {
@@ -78,24 +78,6 @@ struct Overlap {
 };
 
 }  // namespace
-
-Result<std::span<const stage::CameraFrame>> first_frames(const plan::Plan& plan,
-                                                         stage::Stage& stage) {
-  const plan::TaskRecord& record = plan.tasks()[stage.task()];
-  const plan::SceneRecord& scene = plan.scenes()[record.scene];
-  const plan::EpisodeRecord& episode = plan.episodes(record)[0];
-  const auto arm = plan.joints(scene, episode);
-  std::vector<double> q(arm.begin(), arm.end());
-  for (const double joint : plan::joint_starts_of(plan.tables(), scene, episode))
-    q.push_back(joint);
-  std::vector<Pose> objects;
-  for (const plan::PlacementRecord& placed : plan.placements(episode))
-    objects.push_back({to_vec(placed.position), to_quat(placed.rotation)});
-  return stage.view()->render_seen({Sha256{episode.start_id}, 0},
-                                   [&](int) -> stage::SceneView::Placed {
-                                     return {q, objects};
-                                   });
-}
 
 Result<FidelityRow> masks_row(Imported& imported, const Records& records) {
   constexpr double kBar = 0.97;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "runtime/libero/fidelity.h"
+#include "runtime/libero/recorded_view.h"
 #include "runtime/world/world.h"
 
 namespace probe::libero {
@@ -14,18 +15,6 @@ namespace {
 double angle_between(const Quat& a, const Quat& b) {
   const double dot = std::abs(a.dot(b));
   return dot > 1 ? 0 : 2 * std::acos(dot);  // no number stays none
-}
-
-// The plan has objects in the order of their roles.
-Result<std::vector<std::size_t>> places_of(const stage::Stage& stage, const RecordedTask& task) {
-  std::vector<std::size_t> places;
-  for (const auto& [name, said] : task.said["objects"].items()) {
-    const auto at = std::ranges::find(stage.body_names(), name);
-    if (at == stage.body_names().end())
-      return Failure{Fault::kUsage, "the import has no object `" + name + "`", task.key()};
-    places.push_back(static_cast<std::size_t>(at - stage.body_names().begin()));
-  }
-  return places;
 }
 
 // With which others an object is stored in one place: who touches it in the first substep, alone in
@@ -91,7 +80,7 @@ Result<FidelityRow> settling_row(Imported& imported, const Records& records, std
     PROBE_ASSIGN(const plan::Plan* plan, imported.plan(task.suite));
     PROBE_ASSIGN(const auto assets, imported.assets(task.suite, task.name()));
     PROBE_ASSIGN(const auto stage, imported.stage(task.suite, task.name(), {.pictures = false}));
-    PROBE_ASSIGN(const std::vector<std::size_t> places, places_of(*stage, task));
+    PROBE_ASSIGN(const std::vector<std::size_t> places, object_places(*stage, task));
     for (std::size_t i = 0; i < std::min(states.size(), starts); ++i, ++all) {
       PROBE_TRY(stage->reset(static_cast<std::uint32_t>(i)));
       // The thing that is worst off, measured by the bar.

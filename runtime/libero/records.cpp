@@ -143,6 +143,38 @@ Result<std::string> Records::text(const std::string& file) const {
                    {.most = std::size_t{1} << 28, .code = Fault::kUsage, .only_begin = false});
 }
 
+namespace {
+
+// A row of a state: time, arm, fingers, objects, joints of fixtures, then velocities.
+constexpr std::size_t kTime = 1, kArm = 7, kFingers = 2, kPose = 7;
+
+std::size_t fixture_joints_of(const RecordedTask& task) {
+  std::size_t joints = 0;
+  for (const auto& [name, fixture] : task.said["fixtures"].items())
+    joints += fixture["joints"].size();
+  return joints;
+}
+
+std::size_t least_width(const RecordedTask& task) {
+  return kTime + kArm + kFingers + kPose * task.said["objects"].size() + fixture_joints_of(task);
+}
+
+// Of a row of least_width() numbers or more.
+RecordedState state_of(const RecordedTask& task, const double* row) {
+  RecordedState state;
+  const double* q = row + kTime;
+  state.arm.assign(q, q + kArm);
+  q += kArm;
+  state.fingers.assign(q, q + kFingers);
+  q += kFingers;
+  for (std::size_t i = 0; i < task.said["objects"].size(); ++i, q += kPose)
+    state.objects.push_back({Vec3(q[0], q[1], q[2]), Quat(q[3], q[4], q[5], q[6]).normalized()});
+  state.fixture_joints.assign(q, q + fixture_joints_of(task));
+  return state;
+}
+
+}  // namespace
+
 Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) const {
   std::vector<RecordedState> states;
   PROBE_ASSIGN(const std::string bytes, text("libero_settled.npz"));
@@ -162,11 +194,7 @@ Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) co
   if (rows.shape.size() != 2) return Failure{Fault::kUsage, "expected a row a start", where};
   const auto count = static_cast<std::size_t>(rows.shape[0]);
   const auto width = static_cast<std::size_t>(rows.shape[1]);
-  const std::size_t objects = task.said["objects"].size();
-  std::size_t joints = 0;
-  for (const auto& [name, fixture] : task.said["fixtures"].items())
-    joints += fixture["joints"].size();
-  if (rows.bytes.size() != count * width * sizeof(double) || width < 10 + 7 * objects + joints)
+  if (rows.bytes.size() != count * width * sizeof(double) || width < least_width(task))
     return Failure{Fault::kUsage, "its rows are no states of this task", where};
   std::vector<double> values(count * width);
   if (!values.empty()) std::memcpy(values.data(), rows.bytes.data(), rows.bytes.size());
@@ -175,17 +203,18 @@ Result<std::vector<RecordedState>> Records::settled(const RecordedTask& task) co
       return Failure{Fault::kUsage, fmt::format("start {} has what is no number", i / width),
                      where};
   }
-  for (std::size_t r = 0; r < count; ++r) {
-    const double* q = &values[r * width] + 1;
-    RecordedState& state = states.emplace_back();
-    state.arm.assign(q, q + 7);
-    state.fingers.assign(q + 7, q + 9);
-    q += 9;
-    for (std::size_t i = 0; i < objects; ++i, q += 7)
-      state.objects.push_back({Vec3(q[0], q[1], q[2]), Quat(q[3], q[4], q[5], q[6]).normalized()});
-    state.fixture_joints.assign(q, q + joints);
-  }
+  for (std::size_t r = 0; r < count; ++r) states.push_back(state_of(task, &values[r * width]));
   return states;
+}
+
+Result<std::optional<RecordedState>> Records::behind_waiting(const RecordedTask& task) const {
+  const std::string file = "reference/" + task.key() + "_state.json";
+  if (!has(file)) return std::optional<RecordedState>();
+  PROBE_ASSIGN(const Json said, json(file));
+  PROBE_ASSIGN(const std::vector<double> row, numbers(said, "state_t10", 0, file));
+  if (row.size() < least_width(task))
+    return Failure{Fault::kUsage, "`state_t10` is no state of this task", file};
+  return std::optional(state_of(task, row.data()));
 }
 
 Result<std::size_t> RecordedTable::column(const std::string& name) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,10 @@ class Records {
   // libero_settled.npz: by start; empty where the archive has none of this task. Fails (kUsage) on
   // rows that are not float64, that are narrower than the task's state or not finite.
   Result<std::vector<RecordedState>> settled(const RecordedTask& task) const;
+  // `state_t10` of reference/TASK_state.json: its first start behind the waiting steps, with
+  // fixtures where that run had them; nothing where there is no such file. Fails (kUsage) on what
+  // is no state.
+  Result<std::optional<RecordedState>> behind_waiting(const RecordedTask& task) const;
 
  private:
   std::string folder_;

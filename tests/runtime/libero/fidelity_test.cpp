@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "runtime/libero/recorded_view.h"
 #include "runtime/scene/image.h"
 #include "tests/runtime/libero/imported.h"
 #include "tests/runtime/libero/small_folder.h"
@@ -64,29 +65,50 @@ FidelityOptions small_options(const test::SmallFolder& folder) {
   return options;
 }
 
+// The state of our own world behind the waiting steps, as a record has it; its first cup moved by
+// `off` (m).
+std::vector<double> settled_state(stage::Stage& stage, std::uint32_t start, double off) {
+  REQUIRE(stage.reset(start).ok());
+  std::vector<double> row{0.0};
+  row.insert(row.end(), stage.q().begin(), stage.q().begin() + 9);
+  row[9] = -row[9];  // the second finger counts downwards
+  for (const char* object : {"cup_1", "cup_2", "lid_1"}) {
+    const auto& names = stage.body_names();
+    const auto at = std::ranges::find(names, object) - names.begin();
+    const Pose& pose = stage.objects()[static_cast<std::size_t>(at)];
+    for (int k = 0; k < 3; ++k) row.push_back(pose.position[k]);
+    if (std::string_view(object) == "cup_1") row[10] += off;
+    const Quat& q = pose.rotation;
+    row.insert(row.end(), {q.w(), q.x(), q.y(), q.z()});
+  }
+  row.push_back(stage.q().back());
+  return row;
+}
+
+std::unique_ptr<stage::Stage> small_stage(Imported& imported) {
+  auto stage = imported.stage("libero_90", RecordedTask{"", test::kSmallTask, 0, {}}.name(),
+                              {.pictures = false});
+  REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
+  return std::move(stage).value();
+}
+
 // The settled states that our own world has, moved by `off` for the second start's first thing.
 void write_settled(const test::SmallFolder& folder, double off) {
   Imported imported((folder.root / "out").string());
-  std::string name = test::kSmallTask;
-  name = RecordedTask{"", name, 0, {}}.name();
-  const auto stage = imported.stage("libero_90", name, {.pictures = false});
-  REQUIRE_MESSAGE(stage.ok(), (stage.ok() ? "" : to_text(stage.failure())));
-  std::vector<std::vector<double>> rows;
-  for (std::uint32_t i = 0; i < 2; ++i) {
-    REQUIRE((*stage)->reset(i).ok());
-    std::vector<double>& row = rows.emplace_back(std::vector<double>(10, 0.0));
-    for (const char* object : {"cup_1", "cup_2", "lid_1"}) {
-      const auto& names = (*stage)->body_names();
-      const auto at = std::ranges::find(names, object) - names.begin();
-      const Pose& pose = (*stage)->objects()[static_cast<std::size_t>(at)];
-      for (int k = 0; k < 3; ++k) row.push_back(pose.position[k]);
-      if (i == 1 && std::string_view(object) == "cup_1") row[10] += off;
-      const Quat& q = pose.rotation;
-      row.insert(row.end(), {q.w(), q.x(), q.y(), q.z()});
-    }
-    row.push_back((*stage)->q().back());
-  }
+  const auto stage = small_stage(imported);
+  const std::vector<std::vector<double>> rows{settled_state(*stage, 0, 0),
+                                              settled_state(*stage, 1, off)};
   folder.write("records/libero_settled.npz", test::stored_zip("libero_90_00.npy", test::npy(rows)));
+}
+
+// The state in which the pictures of write_pictures() were drawn, its first cup moved by `off` (m).
+void write_state(const test::SmallFolder& folder, double off) {
+  Imported imported((folder.root / "out").string());
+  const auto stage = small_stage(imported);
+  std::string row;
+  for (const double value : settled_state(*stage, 0, off))
+    row += fmt::format("{}{:.17g}", row.empty() ? "" : ", ", value);
+  folder.write("records/reference/libero_90_00_state.json", "{\"state_t10\": [" + row + "]}");
 }
 
 // What our own cameras see behind the waiting steps, as recorded pictures; and where the episode
@@ -162,11 +184,13 @@ TEST_CASE(
   folder.write("records/libero_object_classes.json", classes_json(0.0288));
   write_settled(folder, 0);
   write_pictures(folder, 0, 0);
+  write_state(folder, 0);
   FidelityOptions options = small_options(folder);
   options.sheets = (folder.root / "sheets").string();
   auto rows = measure_fidelity(options);
   REQUIRE_MESSAGE(rows.ok(), (rows.ok() ? "" : to_text(rows.failure())));
-  for (const char* what : {"rules of success", "masks of objects", "pictures"}) {
+  for (const char* what : {"rules of success", "masks of objects", "pictures of recorded states",
+                           "first pictures of a policy"}) {
     CAPTURE(what);
     for (const std::string& other : row_of(*rows, what).others) CHECK(other == "");
     CHECK(row_of(*rows, what).held == Held::kYes);
@@ -174,7 +198,8 @@ TEST_CASE(
   CHECK(row_of(*rows, "rules of success")
             .figure.starts_with("0 unequal; 2 stored, 2 settled and 2 made-up states"));
   CHECK(row_of(*rows, "masks of objects").figure.find("1.000 in the median") != std::string::npos);
-  CHECK(row_of(*rows, "pictures").figure.starts_with("2 pictures: 0.0 in the median"));
+  for (const char* what : {"pictures of recorded states", "first pictures of a policy"})
+    CHECK(row_of(*rows, what).figure.starts_with("2 pictures: 0.0 in the median"));
   const auto sheet = scene::load_image(options.sheets + "/libero_90_00_agentview.png");
   REQUIRE(sheet.ok());
   CHECK(sheet->width == 3 * 256);
@@ -185,13 +210,42 @@ TEST_CASE(
   write_pictures(folder, 6, 20);
   rows = measure_fidelity(options);
   REQUIRE_MESSAGE(rows.ok(), (rows.ok() ? "" : to_text(rows.failure())));
-  for (const char* what : {"rules of success", "masks of objects", "pictures"}) {
+  for (const char* what : {"rules of success", "masks of objects", "pictures of recorded states",
+                           "first pictures of a policy"}) {
     CAPTURE(what);
     CHECK(row_of(*rows, what).held == Held::kNo);
     REQUIRE(!row_of(*rows, what).others.empty());
     CHECK(row_of(*rows, what).others[0].starts_with("libero_90_00"));
   }
   CHECK(row_of(*rows, "masks of objects").others[0].find(": cup_1 0.") != std::string::npos);
+}
+
+TEST_CASE("pictures are drawn in the recorded state, also where our own world rests elsewhere") {
+  const test::SmallFolder folder;
+  REQUIRE(folder.import().ok());
+  folder.write("records/libero_tasks.json", tasks_json("fill the drawer and close it"));
+  write_pictures(folder, 0, 0);
+  write_state(folder, 0.3);
+  const auto rows_of = [&] {
+    auto rows = measure_fidelity(small_options(folder));
+    REQUIRE_MESSAGE(rows.ok(), (rows.ok() ? "" : to_text(rows.failure())));
+    return std::move(rows).value();
+  };
+  auto rows = rows_of();
+  CHECK(row_of(rows, "first pictures of a policy").held == Held::kYes);
+  const FidelityRow& moved = row_of(rows, "pictures of recorded states");
+  CHECK(!moved.figure.starts_with("2 pictures: 0.0 in the median"));
+
+  fs::remove(folder.root / "records/reference/libero_90_00_state.json");
+  rows = rows_of();
+  CHECK(row_of(rows, "pictures of recorded states").held == Held::kNotMeasured);
+  CHECK(row_of(rows, "first pictures of a policy").held == Held::kYes);
+
+  folder.write("records/reference/libero_90_00_state.json", R"({"state_t10": [0, 1, 2]})");
+  const auto damaged = measure_fidelity(small_options(folder));
+  REQUIRE(!damaged.ok());
+  CHECK(to_text(damaged.failure()).find("`state_t10` is no state of this task") !=
+        std::string::npos);
 }
 
 TEST_CASE("fidelity of a small import: what is measured, what is beyond its bar, what is lacking") {
@@ -207,7 +261,8 @@ TEST_CASE("fidelity of a small import: what is measured, what is beyond its bar,
   CHECK(row_of(*rows, "starts").held == Held::kYes);
   CHECK(row_of(*rows, "starts").figure.starts_with("2 of 2;"));
   for (const char* row : {"masses, centres, inertias", "torques of given states",
-                          "things behind the ten waiting steps", "pictures"}) {
+                          "things behind the ten waiting steps", "pictures of recorded states",
+                          "first pictures of a policy"}) {
     CHECK(row_of(*rows, row).held == Held::kNotMeasured);
     CHECK(row_of(*rows, row).how == "no records: `--records DIR`");
   }
@@ -437,7 +492,7 @@ TEST_CASE("fidelity of the reference's import, fixtures where the records have t
     CAPTURE(row.what);
     for (const std::string& other : row.others) CAPTURE(other);
     CHECK(row.held != Held::kNotMeasured);
-    if (row.what == "pictures") {
+    if (row.what == "first pictures of a policy") {
       // Two packs of butter that are stored in one another part otherwise.
       for (const std::string& other : row.others)
         CHECK_MESSAGE(other.starts_with("libero_90_00 "), other);
