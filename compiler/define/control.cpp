@@ -359,7 +359,7 @@ void define_home(Context& context, const syntax::ControlStmt& stmt, Robot& robot
     if (!missing.empty()) said.point("none for " + missing);
     if (robot.fingers.empty()) {
       said.help("without fingers all joints that move are the arm's: " + names +
-                "; a `urdf` in which those of the hand are fixed has none of them");
+                "; fix those of the hand in a `urdf` of its own to leave them out");
     } else {
       said.help("the arm's joints are " + names + "; those of fingers have no home");
     }

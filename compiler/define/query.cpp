@@ -59,7 +59,7 @@ bool compile_relation(Context& context, std::uint32_t relation, const syntax::Na
       context
           .report(Situation::kRelationObjects, objects[i].span,
                   "`" + std::string(objects[i].text) + "` is a fixture, and `" +
-                      std::string(name.text) + "` of a phrase is to an object")
+                      std::string(name.text) + "` in a phrase takes objects")
           .help(
               "a phrase can say where something is among objects; the words of an instruction can "
               "name a fixture or a part");
@@ -266,7 +266,7 @@ std::string lack_of(const Model& model, const Query& query, const Object& object
       has += (i == 0 ? "" : " and ") + attribute.values[values[i]];
     }
   }
-  return lacks.empty() ? std::string() : lacks + " is not so of `" + object.name + "`" + has;
+  return lacks.empty() ? std::string() : lacks + " is not true of `" + object.name + "`" + has;
 }
 
 }  // namespace probe::sema

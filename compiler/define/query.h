@@ -22,8 +22,8 @@ Truth evaluate(const Query& query, const Object& object,
                const std::function<Truth(const QueryOp&)>& placed);
 
 // Of what a query joins by `and`, what keeps it from describing the object, and what that has
-// instead: "`category toy` is not so of `cube_a`, whose category is block"; empty where none is
-// known.
+// instead: "`category toy` is not true of `cube_a`, whose category is block"; empty where nothing
+// is known.
 std::string lack_of(const Model& model, const Query& query, const Object& object,
                     const std::function<Truth(const QueryOp&)>& placed);
 

@@ -149,7 +149,7 @@ class Fit {
       said.label(robot_.urdf.span, "described here");
       said.help(moved.empty()
                     ? "name in `fingers` the links that drives open"
-                    : fmt::format("name in `fingers` those that move alone: `{}`", listed(moved)));
+                    : fmt::format("name in `fingers` only those that move: `{}`", listed(moved)));
       return false;
     }
     return true;

@@ -79,18 +79,18 @@ Diagnostic& report(const plan::Plan& plan, const Task& task, const vm::EarlyEnd&
   const Metric& success = *metric_of(task, "success");
   const Metric& ends = *metric_of(task, plan::kEndsMetric);
   std::string where;
-  if (early.start != 0) where = ", as start " + std::to_string(early.start) + " begins";
+  if (early.start != 0) where = ", in start " + std::to_string(early.start);
   Diagnostic& said =
       diagnostics.report(Code::P0608, task.place(success.span),
                          "`ends when` of `" + task.name +
                              "` ends the episode before `success` can be true: it holds after " +
                              in_words(plan, early.done) + ", with " + in_words(plan, early.left) +
                              " still to be done" + where);
-  said.label(ends.span, "the episode is over here");
+  said.label(ends.span, "this ends the episode");
   if (!(success.span == task.place(success.span))) said.label(success.span, "judged by this");
   return said.help(
-      "a `success` that is replaced keeps the `ends when` that came with it: write `ends when ..` "
-      "anew, by what success asks");
+      "replacing a copied `success` keeps the `ends when` that was copied with it: write "
+      "`ends when ..` anew, with what `success` asks for");
 }
 
 }  // namespace

@@ -60,8 +60,8 @@ QueryId Parser::query_not() {
     QueryRelation out{first, names()};
     if (!failed_ && at(TokenKind::kDot)) {
       fail(Code::P0101, here(),
-           "found `.`, expected `)`: a relation of a phrase is to objects, not to parts or regions "
-           "of fixtures");
+           "found `.`, expected `)`: a relation in a phrase takes objects, not parts or regions of "
+           "fixtures");
     }
     expect(TokenKind::kRightParen);
     if (failed_) return {};

@@ -23,7 +23,7 @@ TEST_CASE("an inherited phrase that no longer describes its object does not deno
   const auto a =
       analyze_with_suite("task v like red_on_tray { source blue; refer source as by_color }");
   CHECK(a->codes() == "P0401");
-  CHECK_MESSAGE(a->said().find("note: `color red` is not so of `blue`, whose color is blue\n") !=
+  CHECK_MESSAGE(a->said().find("note: `color red` is not true of `blue`, whose color is blue\n") !=
                     std::string::npos,
                 a->said());
 }

@@ -80,7 +80,7 @@ TEST_CASE("where it does not hold, or of another one too, the start is named and
         "error[P0401]: \"left block\" does not denote `sided` in 2 of the 2 starts of `t`");
   CHECK(wrong.find("start 0: sided at (0cm, 20cm), tray at (0cm, 0cm), blue at (0cm, -20cm)") !=
         std::string::npos);
-  CHECK_MESSAGE(wrong.find("is not so of `sided`\n") != std::string::npos, wrong);
+  CHECK_MESSAGE(wrong.find("is not true of `sided`\n") != std::string::npos, wrong);
   CHECK(first_line(said(row("-20cm", "-10cm"), "by_tray")) ==
         "error[P0402]: \"block left of the tray\" does not denote alone `sided` in 2 of the 2 "
         "starts of `t`");

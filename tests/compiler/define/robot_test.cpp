@@ -124,7 +124,7 @@ TEST_CASE("a jaw that is fixed is no finger, and the message says which are") {
   CHECK(fixed->underlined() == "right");
   CHECK(fixed->said().find("no drive moves finger `right`: joint `r` is fixed") !=
         std::string::npos);
-  CHECK(fixed->said().find("name in `fingers` those that move alone: `left`") != std::string::npos);
+  CHECK(fixed->said().find("name in `fingers` only those that move: `left`") != std::string::npos);
   const auto one = analyze_with_suite(urdf + "; fingers left opens +y }");
   CHECK_MESSAGE(one->codes() == "", one->said());
 }
