@@ -11,7 +11,7 @@
 #include "compiler/audit/questions.h"
 #include "compiler/audit/rules.h"
 #include "compiler/audit/stage.h"
-#include "compiler/syntax/parser.h"
+#include "compiler/audit/warning_scope.h"
 #include "runtime/base/utf8.h"
 #include "runtime/base/words.h"
 #include "runtime/plan/axes.h"
@@ -510,98 +510,16 @@ class Auditor {
   }
 
   void find_warnings() {
+    WarningScope scope(compilation_, plan_, audit_.suite, scope_);
     for (const Diagnostic& diagnostic : compilation_.diagnostics.items()) {
       if (diagnostic.severity == Severity::kWarning && diagnostic.code != Code::P0701 &&
-          !is_of_others(diagnostic))
+          scope.concerns(diagnostic))
         add_warning(diagnostic, Span{}, std::nullopt);
     }
     for (const Silenced& silenced : compilation_.diagnostics.silenced()) {
       if (silenced.diagnostic.code != Code::P0701)
         add_warning(silenced.diagnostic, silenced.about, silenced.reason);
     }
-  }
-
-  const std::vector<syntax::Decl>& declarations(FileId file) {
-    const auto [known, is_new] = parsed_.try_emplace(file.value);
-    if (is_new) {
-      Diagnostics again;  // said when it was compiled
-      known->second = syntax::parse(compilation_.sources, file, again);
-    }
-    return known->second.file.decls;
-  }
-
-  // Whether a place is in the declaration of a suite: of this one, or of another.
-  bool is_in_suite(const Span& at, bool of_this) {
-    if (at.is_none()) return false;
-    return std::ranges::any_of(declarations(at.file), [&](const syntax::Decl& decl) {
-      const auto* const suite = std::get_if<syntax::SuiteDecl>(&decl.node);
-      return suite != nullptr && is_within(at, decl.span) &&
-             (suite->name.text == audit_.suite) == of_this;
-    });
-  }
-
-  // The names of the tasks that are looked at and of all that these copy: what is said of a copied
-  // statement has its place where that is written.
-  const std::set<std::string>& copied() {
-    if (!copied_.empty()) return copied_;
-    std::multimap<std::string, std::string> from;  // by the copy
-    for (std::uint32_t i = 0; i < compilation_.sources.size(); ++i) {
-      for (const syntax::Decl& decl : declarations(FileId{i})) {
-        if (const auto* const task = std::get_if<syntax::TaskDecl>(&decl.node)) {
-          if (task->like) from.emplace(task->name.text, task->like->text);
-        } else if (const auto* const variant = std::get_if<syntax::VariantDecl>(&decl.node)) {
-          from.emplace(variant->name.text, variant->of.text);
-        } else if (const auto* const variants = std::get_if<syntax::VariantsDecl>(&decl.node)) {
-          for (const syntax::VariantsMember& member : variants->members)
-            from.emplace(member.name.text, variants->of.text);
-        }
-      }
-    }
-    std::vector<std::string> left;
-    for (const std::uint32_t task : scope_) left.push_back(name_of(task));
-    while (!left.empty()) {
-      const std::string name = std::move(left.back());
-      left.pop_back();
-      if (!copied_.insert(name).second) continue;
-      const auto [begin, end] = from.equal_range(name);
-      for (auto it = begin; it != end; ++it) left.push_back(it->second);
-      // What is derived has its baseline in the plan alone.
-      const auto task = plan_.find_task(name);
-      if (task && plan_.tasks()[*task].baseline != plan::kNone)
-        left.push_back(name_of(plan_.tasks()[*task].baseline));
-    }
-    return copied_;
-  }
-
-  // Of another suite, or of declared tasks none of which is looked at or copied by one that is.
-  bool is_of_others(const Diagnostic& said) {
-    const auto in_suite = [&](bool of_this) {
-      return is_in_suite(said.primary, of_this) ||
-             std::ranges::any_of(
-                 said.labels, [&](const Label& label) { return is_in_suite(label.span, of_this); });
-    };
-    if (in_suite(false) && !in_suite(true)) return true;
-    for (const syntax::Decl& decl : declarations(said.primary.file)) {
-      if (!is_within(said.primary, decl.span)) continue;
-      const std::vector<std::uint32_t> tasks = tasks_in(decl.span);
-      return !tasks.empty() && std::ranges::none_of(tasks, [&](std::uint32_t task) {
-        return copied().contains(name_of(task));
-      });
-    }
-    return false;
-  }
-
-  // The tasks whose names stand in a declaration.
-  std::vector<std::uint32_t> tasks_in(const Span& declaration) const {
-    const std::string& file = compilation_.sources.file(declaration.file).name();
-    std::vector<std::uint32_t> found;
-    for (std::uint32_t task = 0; task < plan_.tasks().size(); ++task) {
-      const plan::SpanRecord* span = plan_.span_of(plan::SpanKind::kTasks, task);
-      if (span == nullptr || span->begin < declaration.begin || span->begin >= declaration.end)
-        continue;
-      if (task_place(task).file == file) found.push_back(task);
-    }
-    return found;
   }
 
   void add_warning(const Diagnostic& diagnostic, const Span& about,
@@ -641,8 +559,6 @@ class Auditor {
   std::set<std::string> roots_;
   std::vector<std::uint32_t> scope_;  // tasks: the suite's, then those that no suite holds
   std::map<std::pair<Kind, std::pair<std::uint32_t, std::uint32_t>>, std::size_t> rules_;
-  std::map<std::uint32_t, syntax::ParseResult> parsed_;  // by FileId
-  std::set<std::string> copied_;                         // see there
   Audit audit_;
 };
 
