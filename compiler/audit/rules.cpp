@@ -165,8 +165,7 @@ std::vector<vm::MadeUpWorld> worlds_of(const plan::Plan& plan, std::uint32_t tas
     vm::MadeUpWorld world = worlds.front();
     for (std::size_t i = 0; i < count; ++i) {
       if (i == odd && amiss != Amiss::kNothing) continue;
-      vm::put_at(plan, plan.tasks()[task], puts[i].object, puts[i].place, static_cast<double>(i),
-                 &world);
+      vm::put_at(plan, plan.tasks()[task], puts[i].object, puts[i].place, i, &world);
     }
     if (odd < count && amiss != Amiss::kNothing) {
       world.source = puts[odd].object;

@@ -488,9 +488,9 @@ class Deriver {
 
   MadeUpWorld world_of(const MadeUpWorld& still, const Arranged& bundle, bool handled) const {
     MadeUpWorld world = still;
-    double along = 0;
+    std::size_t index = 0;
     for (const auto& [object, place] : bundle.objects)
-      put_at(plan_, record_, object, place, along++, &world);
+      put_at(plan_, record_, object, place, index++, &world);
     const std::size_t first =
         world.sample.joints.size() - joints_.size();  // the robot's stand before
     for (const JointMove& move : bundle.joints) {

@@ -16,9 +16,9 @@ constexpr double kBeside = 0.015;  // m: between the boxes of what lies beside o
 
 // Several things beside one stand on its sides in turn: on one side, a thing would be between that
 // and a larger one, whatever the real world has.
-Vec3 side_of(double along) {
+Vec3 side_of(std::size_t index) {
   constexpr std::array<std::array<double, 2>, 4> kSides = {{{0, 1}, {1, 0}, {0, -1}, {-1, 0}}};
-  const auto& [x, y] = kSides[static_cast<std::size_t>(along) % kSides.size()];
+  const auto& [x, y] = kSides[index % kSides.size()];
   return {x, y, 0};
 }
 
@@ -32,8 +32,8 @@ void touch(std::uint32_t above, std::uint32_t below, MadeUpWorld* world) {
 }  // namespace
 
 void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t object,
-            const PutPlace& place, double along, MadeUpWorld* world) {
-  const Vec3 aside(kAside * along, 0, 0);
+            const PutPlace& place, std::size_t index, MadeUpWorld* world) {
+  const Vec3 aside(kAside * static_cast<double>(index), 0, 0);
   const Vec3& half = world->starts[object].half;
   std::uint32_t below = place.to;
   Vec3 at = Vec3::Zero();
@@ -46,7 +46,7 @@ void put_at(const plan::Plan& plan, const plan::TaskRecord& task, std::uint32_t 
     const Vec3& to = world->sample.bodies[below].position;
     if (place.relation == plan::SkillRelation::kBeside) {
       const double apart = half.head<2>().norm() + half_below.head<2>().norm() + kBeside;
-      at = to + world->mirrored(apart * side_of(along) + Vec3(0, 0, half.z() - half_below.z()));
+      at = to + world->mirrored(apart * side_of(index) + Vec3(0, 0, half.z() - half_below.z()));
       below = world->surface;
     } else {
       // In a hollow thing it lies on the floor.
