@@ -20,9 +20,9 @@ constexpr int kSteps = 8;
 constexpr double kMostGap = 2e-3;  // m: above what carries it, where a layout puts it
 constexpr double kFloor = 5e-3;    // m: of a hollow thing
 constexpr double kFar = 0.5;       // m: where objects stand that do not matter
-constexpr double kLow = 0.05;      // m: over the surface, of parts that are as low as that
-constexpr double kGap = 0.01;      // m: in the ring
-constexpr std::size_t kMostNear = 8;
+constexpr double kLow = 0.05;      // m: over the surface, of parts that are low (kBack)
+constexpr double kGap = 0.01;      // m: between what stands in the ring and its middle (kNear)
+constexpr std::size_t kMostNear = 8;  // objects in the ring
 constexpr double kAlike = 0.01;    // m, rad: joints that begin alike, as far as one asks
 
 // Half extents with z the axis that is nearest the vertical in the pose, as a world gives them.
@@ -79,9 +79,10 @@ PlacedObject placed_object(std::uint16_t body, const plan::ObjectRecord& object,
   return out;
 }
 
+// Of its box's shadow: with middles as far apart as two of these, boxes do not meet.
 double half_diagonal(const BodyStart& body) { return body.half.head<2>().norm(); }
 
-// The ring about `middle`, by object: each a centimetre off it, the side along +y left free.
+// Where objects stand in a ring about `middle`, off it by kGap; the side along +y is left free.
 std::vector<std::pair<std::size_t, Vec3>> ring_about(std::size_t middle,
                                                      std::span<const std::size_t> objects,
                                                      const MadeUpWorld& world) {
@@ -97,6 +98,21 @@ std::vector<std::pair<std::size_t, Vec3>> ring_about(std::size_t middle,
     ring.emplace_back(object, Vec3(-far * t.sin, far * t.cos, 0));
   }
   return ring;
+}
+
+// The first objects stand about the target, or about the source, or else about the first of them.
+void stand_near(const plan::TaskRoles& roles, std::span<const std::size_t> objects, double table,
+                MadeUpWorld* world) {
+  const auto put = [&](std::size_t object, Vec3 at) {
+    at.z() = table + world->starts[object].half.z();
+    world->starts[object].position = at;
+    world->put(object, at);
+  };
+  std::size_t middle = objects.front();
+  if (roles.has_source() && roles.source < roles.objects) middle = roles.source;
+  if (roles.has_target() && roles.target < roles.objects) middle = roles.target;
+  put(middle, Vec3::Zero());
+  for (const auto& [object, at] : ring_about(middle, objects, *world)) put(object, at);
 }
 
 }  // namespace
@@ -131,7 +147,7 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
       world.sample.joints.push_back({position, 0});
   }
   std::vector<std::size_t> objects;
-  double parts = 0;  // so far
+  std::size_t parts = 0;  // so far
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const auto kind = static_cast<plan::BodyKind>(bodies[i].kind);
     Vec3 at = {0, 0, table + kFar};
@@ -155,24 +171,12 @@ MadeUpWorld make_up_world(const plan::Plan& plan, std::uint32_t task, std::uint3
       // Apart, as regions of two parts may be one box in the parts' own frames.
       at = world.mirrored({0, -kFar * static_cast<double>(i), table + kFar});
       if (spread == Spread::kBack) at.z() = table + kLow;
-      if (spread == Spread::kNear) at = {0, 0, table + kFar * ++parts};
+      if (spread == Spread::kNear) at = {0, 0, table + kFar * static_cast<double>(++parts)};
     }
     world.starts[i].position = at;
     world.put(i, at);
   }
-  if (spread == Spread::kNear && !objects.empty()) {
-    const std::size_t middle = roles.has_target() && roles.target < roles.objects ? roles.target
-                               : roles.has_source() && roles.source < roles.objects
-                                   ? roles.source
-                                   : objects.front();
-    const auto set = [&](std::size_t object, Vec3 at) {
-      at.z() = table + world.starts[object].half.z();
-      world.starts[object].position = at;
-      world.put(object, at);
-    };
-    set(middle, Vec3::Zero());
-    for (const auto& [object, at] : ring_about(middle, objects, world)) set(object, at);
-  }
+  if (spread == Spread::kNear && !objects.empty()) stand_near(roles, objects, table, &world);
   for (const auto legs : plan::moves_of(plan.tables(), record)) {
     const auto body = static_cast<std::uint16_t>(legs.front().body);
     world.sample.own.push_back({body, world.starts[body].position});
