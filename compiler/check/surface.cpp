@@ -34,7 +34,7 @@ constexpr double kHighest = 2.0;  // m
 bool check_heights(const TaskStarts& starts, Travels& travels) {
   const Scene& scene = starts.model.scenes[starts.task.scene];
   const bool has_fixtures = scene.fixture || !scene.fixtures.empty();
-  std::optional<Travels::Heights> held;  // looked up once something is far from the surface
+  std::optional<Travels::Heights> heights;  // looked up once something is far from the surface
   for (std::size_t e = 0; e < starts.task.starts.size(); ++e) {
     const Start& start = starts.task.starts[e];
     for (const Start::Placed& placed : start.placed) {
@@ -45,14 +45,15 @@ bool check_heights(const TaskStarts& starts, Travels& travels) {
         return bottom < low - kDeepest || bottom > high + kHighest;
       };
       if (!is_off(scene.surface_z, scene.surface_z)) continue;
-      if (!held) held = travels.heights(scene);
-      if (!held) return true;
-      if (!is_off(held->low, held->high)) continue;
-      const bool is_below = bottom < held->low;
+      if (!heights) heights = travels.heights(scene);
+      if (!heights) return true;
+      if (!is_off(heights->low, heights->high)) continue;
+      const bool is_below = bottom < heights->low;
       const GivenPlace* row =
           row_of(starts.model, starts.layout, starts.task, start, placed.object);
-      const std::string far = centimetres(is_below ? held->low - bottom : bottom - held->high) +
-                              (is_below ? " below" : " above");
+      const std::string far =
+          centimetres(is_below ? heights->low - bottom : bottom - heights->high) +
+          (is_below ? " below" : " above");
       Diagnostic& said = starts.reporter.report(
           Situation::kOverEdge, row == nullptr ? starts.place({placed.object}) : row->z_span,
           "`" + object.name + "` begins " + far +
@@ -61,8 +62,8 @@ bool check_heights(const TaskStarts& starts, Travels& travels) {
       said.label(starts.layout.span, "the layout")
           .label(scene.span,
                  "the surface is at " + centimetres(scene.surface_z) +
-                     (has_fixtures ? ", what stands there from " + centimetres(held->low) + " to " +
-                                         centimetres(held->high)
+                     (has_fixtures ? ", what stands there from " + centimetres(heights->low) +
+                                         " to " + centimetres(heights->high)
                                    : ""))
           .help("`z_m` is the height of its model's origin above the floor, in metres")
           .cause = cause_of(starts.layout.span, {scene.name, object.name});

@@ -190,9 +190,10 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
   analyzed.compilation.sources = std::move(sources);
   PROBE_TRY(analyze(files, options, analyzed));
   Compilation& compilation = analyzed.compilation;
-  const bool looks = compilation.starts <= kMostStartsJudged && emit::may_end_early(analyzed.model);
+  const bool asks_judge =
+      compilation.starts <= kMostStartsJudged && emit::may_end_early(analyzed.model);
   const bool write =
-      (plan.is_wanted && (plan.is_kept || compilation.starts <= plan.most_starts)) || looks;
+      (plan.is_wanted && (plan.is_kept || compilation.starts <= plan.most_starts)) || asks_judge;
   const bool is_stopped = options.stop != nullptr && options.stop->load();
   if (compilation.ok && !is_stopped) {
     const emit::EmitOptions emit_options{
@@ -206,7 +207,7 @@ Result<Compilation> compile(std::span<const std::string> files, const CompileOpt
         .hashed = hashed};
     PROBE_ASSIGN(compilation.plan, emit::emit(analyzed.model, compilation.sources, analyzed.ids,
                                               emit_options, compilation.diagnostics));
-    if (looks && !compilation.plan.empty())
+    if (asks_judge && !compilation.plan.empty())
       PROBE_TRY(emit::note_early_ends(analyzed.model, compilation.plan, compilation.diagnostics));
   }
   compilation.ok = !compilation.diagnostics.has_errors();
