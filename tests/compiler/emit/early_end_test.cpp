@@ -6,7 +6,6 @@
 
 #include "compiler/diag/text.h"
 #include "compiler/emit/compile.h"
-#include "tests/compiler/small_suite.h"
 
 using namespace probe;
 

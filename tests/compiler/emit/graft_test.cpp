@@ -29,6 +29,15 @@ AnalyzedText analyzed(const std::string& text) {
   return std::move(*made);
 }
 
+plan::Plan kitchen() {
+  const std::string file = VLAPROBE_SOURCE_DIR "/suite/kitchen.probe";
+  const auto built = build({&file, 1}, options());
+  REQUIRE(built.ok());
+  auto stored = plan::Plan::from_bytes(built->plan);
+  REQUIRE(stored.ok());
+  return std::move(*stored);
+}
+
 const std::string kOpened =
     "use \"suite/kitchen.probe\"\nmetrics extra { far = max travel(cabinet.top) }\n";
 
@@ -38,16 +47,12 @@ TEST_CASE(
     "metrics of a text that uses another with tasks, as for its fixtures, are metrics alone") {
   AnalyzedText text = analyzed(kOpened);
   REQUIRE(is_metrics_alone(text));
-  const std::string kitchen = VLAPROBE_SOURCE_DIR "/suite/kitchen.probe";
-  const auto built = build({&kitchen, 1}, options());
-  REQUIRE(built.ok());
-  const auto stored = plan::Plan::from_bytes(built->plan);
-  REQUIRE(stored.ok());
-  const auto grafted = graft_metrics(*stored, std::move(text));
+  const plan::Plan stored = kitchen();
+  const auto grafted = graft_metrics(stored, std::move(text));
   REQUIRE_MESSAGE(grafted.ok(), to_text(grafted.failure()));
   CHECK(grafted->metrics == std::vector<std::string>{"far"});
   REQUIRE(grafted->left_out.size() == 1);  // of tasks in a scene without it
-  CHECK(grafted->left_out[0].tasks.size() < stored->tasks().size());
+  CHECK(grafted->left_out[0].tasks.size() < stored.tasks().size());
 }
 
 TEST_CASE("a text with tasks or a suite of its own is judged as a plan") {
@@ -56,14 +61,10 @@ TEST_CASE("a text with tasks or a suite of its own is judged as a plan") {
 }
 
 TEST_CASE("only a metric that is measured from a camera is refused, whatever else the text uses") {
-  const std::string kitchen = VLAPROBE_SOURCE_DIR "/suite/kitchen.probe";
-  const auto built = build({&kitchen, 1}, options());
-  REQUIRE(built.ok());
-  const auto stored = plan::Plan::from_bytes(built->plan);
-  REQUIRE(stored.ok());
+  const plan::Plan stored = kitchen();
   const std::string seen =
       "use \"std/space.probe\"\nmetrics extra { side = min view_x(surface) }\n";
-  CHECK_FALSE(graft_metrics(*stored, analyzed(seen)).ok());
+  CHECK_FALSE(graft_metrics(stored, analyzed(seen)).ok());
   const std::string unseen = "use \"std/space.probe\"\nmetrics extra { on = final time }\n";
-  CHECK(graft_metrics(*stored, analyzed(unseen)).ok());
+  CHECK(graft_metrics(stored, analyzed(unseen)).ok());
 }
