@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""power_cut.py [--cuts N] [--seed S] [--forget SUFFIX] [--build DIR] [VERB..]: cuts the power N times (100) over `run`, `merge` and
-`ask`, at a random one of the calls that force something to the disk, and looks at what a machine would find when it is switched on
-again: in one half of the cuts nothing that was not forced, in the other any of it. Then the verb goes on. Held each time: what is
-there is read, no row lacks its trace, and in the end the rows are those of one that nobody disturbed.
+"""power_cut.py [--cuts N] [--seed S] [--forget SUFFIX] [--build DIR] [VERB..]: cuts the power N times (100) over each of `run`, `merge`,
+`sweep`, `ask`, `table` and `dataset` (`export` of either), at a random one of the calls that force something to the disk, and looks at
+what a machine would find when it is switched on again: in one half of the cuts nothing that was not forced, in the other any of it.
+Then the verb goes on. Held each time: what is there is read, no row lacks its trace, what has the name of an export is whole, and in
+the end the rows or bytes are those of one that nobody disturbed.
 --forget .trace plants a mistake, files that are not forced, which has to be found: exit 0 then means that it was."""
 
 import argparse
+import hashlib
 import json
 import os
 import pathlib
@@ -99,48 +101,86 @@ def rows_of(program, folder):
     return sorted(json.dumps(row, sort_keys=True) for row in rows)
 
 
-def begun(folder):
-    return any((folder / name).exists() for name in ("results.sqlite", "answers.sqlite"))
+class Rows:
+    """A verb that makes one run's folder, or answers; with `parts` a folder of such."""
+
+    def __init__(self, program, words, parts=("",), most=40):
+        self.program, self.words, self.parts, self.most = program, words, parts, most
+
+    def look(self, out):
+        """What a cut left is read."""
+        for part in self.parts:
+            if not any((out / part / name).exists() for name in ("results.sqlite", "answers.sqlite")):
+                continue
+            try:
+                rows_of(self.program, out / part)
+            except Found as found:
+                # A database that was not made yet is told, and the verb begins it.
+                if not any(words in str(found) for words in ("was cut off as it began", "no run here:", "no answers here:")):
+                    raise
+
+    def content(self, out):
+        return [row for part in self.parts for row in rows_of(self.program, out / part)]
+
+    def begin_anew(self, out):
+        shutil.rmtree(out)
 
 
-def campaign(verb, words, program, disk, calm, cuts):
-    """`words`: of the verb, with OUT in place of its folder."""
-    out = disk.root / "out"
+class Export:
+    """A file, or a folder of a dataset: whole where it has its name. `most`: of its calls that force something."""
+
+    def __init__(self, program, words, check, most):
+        self.program, self.words, self.check, self.most = program, words, check, most
+
+    def look(self, out):
+        if not out.exists():
+            return
+        is_half = out.is_dir() and not (out / "meta/info.json").exists()
+        if not is_half:
+            said = subprocess.run([self.program, "export", "--check", out, *self.check], capture_output=True, text=True)
+            if said.returncode != 0:
+                raise Found(f"what has the name of an export does not hold: {said.stderr.strip()[-600:]}")
+        if out.is_dir():  # half or whole, a folder that is there is not written into
+            shutil.rmtree(out)
+
+    def content(self, out):
+        files = [path for path in sorted(out.rglob("*")) if path.is_file()] if out.is_dir() else [out]
+        return [f"{path.relative_to(out)} {hashlib.sha256(path.read_bytes()).hexdigest()}" for path in files]
+
+    def begin_anew(self, out):
+        shutil.rmtree(out) if out.is_dir() else out.unlink()
+
+
+def campaign(name, verb, call, disk, out, calm, cuts):
+    """`call`: its command line, which makes `out`."""
     since_cut = 0
-    call = [program, verb, *(str(out) if word == "OUT" else word for word in words)]
     done = missed = 0
     while done < cuts:
-        at = random.randint(1, 40)
+        at = random.randint(1, verb.most)
         chance = random.choice([0, 0.5])
         ended = subprocess.run(call, env=disk.environment(PROBE_CUT=str(at)), capture_output=True, text=True)
         if ended.returncode not in (0, -signal.SIGKILL):
-            raise Found(f"{verb} ends with {ended.returncode}: {ended.stderr.strip()[-600:]}")
+            raise Found(f"{name} ends with {ended.returncode}: {ended.stderr.strip()[-600:]}")
         if ended.returncode == 0:  # it was done before: begin anew
             missed += 1
             since_cut += 1
             if since_cut > 30:
                 sys.exit("power_cut.py: nothing is cut; is the program linked with another C library, or does it force nothing?")
-            if rows_of(program, out) != calm:
-                raise Found(f"{verb}: its rows are not those of one without cuts")
-            shutil.rmtree(out)
+            if verb.content(out) != calm:
+                raise Found(f"{name}: what it made is not that of one without cuts")
+            verb.begin_anew(out)
             disk.settle()
             continue
         done += 1
         since_cut = 0
         disk.cut(chance)
-        if begun(out):
-            try:
-                rows_of(program, out)
-            except Found as found:
-                # A database that was not made yet is told, and the verb begins it.
-                if not any(words in str(found) for words in ("was cut off as it began", "no run here:", "no answers here:")):
-                    raise
+        verb.look(out)
     ended = subprocess.run(call, capture_output=True, text=True)
     if ended.returncode != 0:
-        raise Found(f"{verb} does not go on: {ended.stderr.strip()[-600:]}")
-    if rows_of(program, out) != calm:
-        raise Found(f"{verb}: its rows are not those of one without cuts")
-    print(f"{verb}: {done} cuts, {missed} times done before the cut; {len(calm)} rows, those of one without cuts", flush=True)
+        raise Found(f"{name} does not go on: {ended.stderr.strip()[-600:]}")
+    if verb.content(out) != calm:
+        raise Found(f"{name}: what it made is not that of one without cuts")
+    print(f"{name}: {done} cuts, {missed} times done before the cut; {len(calm)} rows or files, those of one without cuts", flush=True)
 
 
 def main():
@@ -164,19 +204,28 @@ def main():
         for shard in ("1", "2"):
             subprocess.run([program, "run", *act, "--episodes", "0-5", "--shard", f"{shard}/2", "-o", work / shard], check=True,
                            capture_output=True)
+        few = [str(plan), "--tasks", "carrot_on_plate", "--episodes", "0-3"]
+        whole = work / "whole"
+        subprocess.run([program, "run", *act, "--episodes", "0-1", "-o", whole], check=True, capture_output=True)
         verbs = {
-            "run": [*act, "--episodes", "0-5", "--jobs", "2", "-o", "OUT"],
-            "merge": [str(work / "1"), str(work / "2"), "-o", "OUT"],
-            "ask": [str(HERE / "suite/questions.probe"), "--tasks", "*carrot_on_plate", "--episodes", "0-1", "--model", "random", "-o", "OUT"],
+            "run": Rows(program, ["run", *act, "--episodes", "0-5", "--jobs", "2"]),
+            "merge": Rows(program, ["merge", work / "1", work / "2"]),
+            "sweep": Rows(program, ["sweep", *few, "--policy", "weak:ambient<{}", "--checkpoints", "0.1,0.5"], ("0.1", "0.5")),
+            "ask": Rows(program, ["ask", HERE / "suite/questions.probe", "--tasks", "*carrot_on_plate", "--episodes", "0-1", "--model", "random"]),
+            "table": Export(program, ["export", whole], [whole], 1),
+            "dataset": Export(program, ["export", whole, "--format", "lerobot", "--size", "64x48"], [whole, "--no-redraw"], 30),
         }
         try:
-            for verb in wish.verbs or verbs:
-                calm = work / f"calm_{verb}"
-                words = [str(calm) if word == "OUT" else word for word in verbs[verb]]
-                subprocess.run([program, verb, *words], check=True, capture_output=True)
-                here = work / verb
+            for name in wish.verbs or verbs:
+                verb = verbs[name]
+                ending = ".h5" if name == "table" else ""
+                calm = work / f"calm_{name}{ending}"
+                subprocess.run([program, *verb.words, "-o", calm], check=True, capture_output=True)
+                here = work / name
                 here.mkdir()
-                campaign(verb, verbs[verb], program, Disk(here, library), rows_of(program, calm), wish.cuts)
+                disk = Disk(here, library)
+                out = disk.root / f"out{ending}"
+                campaign(name, verb, [program, *verb.words, "-o", out], disk, out, verb.content(calm), wish.cuts)
         except Found as found:
             print(f"FOUND {found}")
             return 0 if wish.forget and "is left out" in str(found) else 1

@@ -14,7 +14,9 @@ std::string cut(const std::string& words) {
 }  // namespace
 
 TEST_CASE("when the power is cut nothing that was stored is lost or torn, and the verb goes on") {
-  check_campaign(cut("--cuts 6 run merge"), {"run: 6 cuts", "merge: 6 cuts"});
+  check_campaign(
+      cut("--cuts 4 run merge sweep table dataset"),
+      {"run: 4 cuts", "merge: 4 cuts", "sweep: 4 cuts", "table: 4 cuts", "dataset: 4 cuts"});
 }
 
 TEST_CASE("traces that are not forced to the disk would be found") {

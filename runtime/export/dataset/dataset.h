@@ -43,7 +43,7 @@ struct DatasetReport {
 
 enum class Format { kLerobot, kRobomimic, kRlds };
 
-// Writes the folder `out`, whole or not at all: it is made as OUT.partial; a later call that
+// Writes the folder `out`, whole or not at all: it is made in OUT.partial; a later call that
 // makes the same goes on with the demonstrations that a killed one had finished. Fails with kUsage
 // where runs do not go into one dataset or `out` is there, with kTrace naming episode and step when
 // a picture is not the one that the policy saw, and with kIo or kVideo naming the file that cannot

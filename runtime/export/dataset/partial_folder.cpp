@@ -1,5 +1,6 @@
 #include "runtime/export/dataset/partial_folder.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "runtime/base/file.h"
@@ -12,8 +13,24 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMark = ".vlaprobe-export";
+constexpr const char* kDataset = "dataset";
 constexpr const char* kLock = "lock";  // FolderLock's
 constexpr const char* kFinished = "finished";
+
+// Nothing but what is there before the mark is: a cut may leave that.
+bool is_only_begun(const std::vector<std::string>& names) {
+  return std::ranges::all_of(names, [](const std::string& name) { return name == kLock; });
+}
+
+Status sync_folders(const std::string& root) {
+  std::error_code error;
+  for (auto at = fs::recursive_directory_iterator(root, error);
+       !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
+    if (at->is_directory()) PROBE_TRY(sync_folder(at->path().string()));
+  }
+  if (error) return Failure{Fault::kIo, "cannot be listed: " + error.message(), root};
+  return sync_folder(root);
+}
 
 Status clear(const std::string& path, bool with_finished) {
   PROBE_ASSIGN(const auto names, list_folder(path));
@@ -45,7 +62,7 @@ Result<PartialFolder> PartialFolder::create(const std::string& out, const std::s
     const auto names = is_folder(path)
                            ? list_folder(path)
                            : Result<std::vector<std::string>>(Failure{Fault::kUsage, "", path});
-    if (!is_ours && !(names && names->empty()))
+    if (!is_ours && !(names && is_only_begun(*names)))
       return Failure{Fault::kUsage, "is there and is not what an export left; move it away", path};
   }
   PROBE_TRY(make_folders(path));
@@ -56,10 +73,16 @@ Result<PartialFolder> PartialFolder::create(const std::string& out, const std::s
   const auto before = read_file(mark);
   const bool goes_on = before.ok() && *before == now;
   PROBE_TRY(clear(path, !goes_on));
-  if (!goes_on) PROBE_TRY(write_file(mark, std::as_bytes(std::span(now))));
+  if (!goes_on) {
+    PROBE_TRY(write_file(mark, std::as_bytes(std::span(now))));
+    PROBE_TRY(sync_folder(path));  // before anything else of it is on the disk
+  }
+  PROBE_TRY(make_folders(folder.path()));
   PROBE_TRY(make_folders(folder.finished()));
   return folder;
 }
+
+std::string PartialFolder::path() const { return path_ + "/" + kDataset; }
 
 std::string PartialFolder::finished() const { return path_ + "/" + kFinished; }
 
@@ -70,17 +93,16 @@ PartialFolder::~PartialFolder() {
 }
 
 Status PartialFolder::finish() {
+  PROBE_TRY(sync_folders(path()));
   std::error_code error;
-  fs::remove(fs::path(path_) / kLock, error);
-  fs::remove_all(fs::path(path_) / kFinished, error);
-  if (error) return {Failure{Fault::kIo, "cannot be removed: " + error.message(), finished()}};
-  fs::remove(fs::path(path_) / kMark, error);
   fs::remove(out_, error);  // an empty folder of that name
-  fs::rename(path_, out_, error);
+  fs::rename(path(), out_, error);
   if (error) return {Failure{Fault::kIo, "cannot be given its name: " + error.message(), out_}};
-  path_.clear();
   const fs::path parent = fs::path(out_).parent_path();
-  return sync_folder(parent.empty() ? "." : parent.string());
+  PROBE_TRY(sync_folder(parent.empty() ? "." : parent.string()));
+  fs::remove_all(path_, error);  // the mark, the lock and what had been finished
+  path_.clear();
+  return {};
 }
 
 }  // namespace probe::dataset

@@ -1,6 +1,7 @@
-// A dataset's folder while it is made: OUT.partial, which gets its name when it is whole. What a
-// killed export left is recognised: its files are begun anew, of the demonstrations that it had
-// finished one that makes the same goes on with them. What others put there is never touched.
+// A dataset while it is made: OUT.partial/dataset, which becomes OUT when it is whole and on the
+// disk; beside it a mark, a lock, and finished demonstrations. What a killed export left is
+// recognised: its files are begun anew, of the demonstrations that it had finished one that makes
+// the same goes on with them. What others put there is never touched.
 #pragma once
 
 #include <optional>
@@ -22,9 +23,9 @@ class PartialFolder {
   PartialFolder& operator=(PartialFolder&&) = delete;
   ~PartialFolder();  // removes what was not finished
 
-  const std::string& path() const { return path_; }  // where files are written now
-  std::string finished() const;                      // where finished demonstrations are kept
-  // Gives the folder its name. Fails with kIo.
+  std::string path() const;      // where files are written now
+  std::string finished() const;  // where finished demonstrations are kept
+  // Gives the dataset its name. Fails with kIo.
   Status finish();
 
  private:

@@ -278,6 +278,13 @@ TEST_CASE("folders of others are refused, what a killed export left is begun ane
   must_export(made.run, made.out, Format::kLerobot, dataset_options());
   CHECK(!fs::exists(made.out + "/mine.txt"));
   CHECK(!fs::exists(made.out + "/.vlaprobe-export"));
+  CHECK(!fs::exists(made.out + ".partial"));
+  // And as a cut of the power does, before the mark was on the disk.
+  fs::remove_all(made.out);
+  fs::create_directories(made.out + ".partial");
+  std::ofstream(made.out + ".partial/lock") << "";
+  must_export(made.run, made.out, Format::kLerobot, dataset_options());
+  CHECK(!fs::exists(made.out + "/lock"));
 }
 
 // An export in a process of its own that is killed when so many demonstrations are done.
