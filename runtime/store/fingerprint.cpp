@@ -19,7 +19,7 @@ namespace probe::store {
 namespace {
 
 // Libraries whose code can change a state or a picture, by the start of their file name.
-constexpr std::array<std::pair<const char*, const char*>, 8> kLibraries = {{
+constexpr std::array<std::pair<const char*, const char*>, 14> kLibraries = {{
     {"libSimTKsimbody", "simbody"},
     {"libSimTKmath", "simtk_math"},
     {"libSimTKcommon", "simtk_common"},
@@ -28,6 +28,12 @@ constexpr std::array<std::pair<const char*, const char*>, 8> kLibraries = {{
     {"libpng", "png"},
     {"libm.so", "libm"},
     {"libm-", "libm"},
+    {"libblas", "blas"},
+    {"libopenblas", "openblas"},
+    {"libmkl_rt", "mkl"},
+    {"liblapack", "lapack"},
+    {"libcholmod", "cholmod"},
+    {"libnlopt", "nlopt"},
 }};
 
 std::string build_id(const dl_phdr_info& info) {
