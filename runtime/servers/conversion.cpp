@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/policy/sent_prompt.h"
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/libero_state.h"
 
@@ -268,15 +269,17 @@ Result<std::vector<double>> laid_out(const Profile& profile, StateLayout layout,
 }  // namespace
 
 std::string to_prompt(const Profile& profile, std::string_view prompt) {
+  // Other ways to write it: policy::can_be_sent_as has to know them too.
   std::string text(prompt);
-  if (profile.prompt_case == PromptCase::kLower) {
-    for (char& c : text) {
-      if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
+  if (profile.prompt_case == PromptCase::kLower) text = policy::in_lower_case(std::move(text));
+  switch (profile.prompt_full_stop) {
+    case FullStop::kWith:
+      return policy::with_full_stop(std::move(text));
+    case FullStop::kWithout:
+      return policy::without_full_stop(std::move(text));
+    case FullStop::kAsIs:
+      break;
   }
-  const bool has_stop = text.ends_with('.');
-  if (profile.prompt_full_stop == FullStop::kWithout && has_stop) text.pop_back();
-  if (profile.prompt_full_stop == FullStop::kWith && !has_stop) text.push_back('.');
   return text;
 }
 

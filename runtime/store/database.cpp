@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "runtime/base/paths.h"
@@ -212,7 +214,11 @@ std::optional<std::string> Statement::optional_text(int column) const {
   return text(column);
 }
 
-int Statement::number(int column) const { return sqlite3_column_int(statement_, column); }
+int Statement::number(int column) const {
+  constexpr std::int64_t kLeast = std::numeric_limits<int>::min(),
+                         kMost = std::numeric_limits<int>::max();
+  return static_cast<int>(std::clamp(whole(column), kLeast, kMost));
+}
 
 std::int64_t Statement::whole(int column) const { return sqlite3_column_int64(statement_, column); }
 

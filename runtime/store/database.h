@@ -79,7 +79,7 @@ class Statement {
   bool next();
   std::string text(int column) const;
   std::optional<std::string> optional_text(int column) const;
-  int number(int column) const;
+  int number(int column) const;  // the nearest there is: never what is left of a larger one
   std::int64_t whole(int column) const;
   double real(int column) const;
   enum class Kind { kNull, kWhole, kReal, kText, kOther };

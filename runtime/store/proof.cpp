@@ -5,9 +5,11 @@
 #include <optional>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "runtime/plan/fixtures.h"
 #include "runtime/plan/later.h"
+#include "runtime/policy/sent_prompt.h"
 #include "runtime/store/episode_key.h"
 #include "runtime/store/proof_book.h"
 #include "runtime/store/run_plan.h"
@@ -32,12 +34,12 @@ bool is_judged_so(const plan::Plan& plan, std::uint32_t task, const Trace& trace
   // Which sentence was said when is judged where there are several.
   vm::Told told(plan, task);
   const bool changes = !plan::later_of(plan.tables(), task).empty() || !trace.header.later.empty();
-  const auto said = changes ? sentences_said(trace) : std::nullopt;
-  if ((changes && !said) || !told.begin(trace.start->starts)) return false;
+  const auto said = sentences_said(trace);
+  if (!said || !told.begin(trace.start->starts)) return false;
   for (std::size_t i = 0; i < trace.steps.size(); ++i) {
     const TraceStep& step = trace.steps[i];
     if (judge.ended()) return false;  // nothing comes behind the end
-    if (said && told.sentence() != (*said)[i]) return false;
+    if (changes && told.sentence() != (*said)[i]) return false;
     if (!judge.step(step.sample) || !told.step(step.sample)) return false;
     if (!std::ranges::equal(judge.values(), step.metrics)) return false;
   }
@@ -45,6 +47,44 @@ bool is_judged_so(const plan::Plan& plan, std::uint32_t task, const Trace& trace
   return trace.end->invalid || trace.steps.empty() ||
          std::ranges::equal(trace.end->metrics, trace.steps.back().metrics, {},
                             &MetricValue::value);
+}
+
+bool is_hash(std::string_view text) {
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+  return text.size() == 2 * sizeof(Sha256) && std::ranges::all_of(text, is_digit);
+}
+
+// Of what the policy was told and shown. A picture that it failed at is in no step of the trace,
+// and which pixels left for a server is in the row alone.
+std::string wrong_hash(const ResultRow& row, const Trace& trace) {
+  const auto not_of = [](const char* column, const char* what) {
+    return std::string("its result row's `") + column + "` is not that of " + what;
+  };
+  const auto no_hash = [](const char* column) {
+    return std::string("its result row's `") + column + "` is no hash";
+  };
+  const std::string& prompt = trace.header.prompt;
+  if (row.prompt_sha256 != to_hex(sha256(prompt)))
+    return not_of("prompt_sha256", "the instruction that this trace was told");
+  if (trace.steps.empty()) {
+    if (!row.image_sha256.empty() && !is_hash(row.image_sha256)) return no_hash("image_sha256");
+    if (!row.frames_sha256.empty()) return not_of("frames_sha256", "the pictures in this trace");
+  } else {
+    Hasher frames;
+    for (const TraceStep& step : trace.steps) frames.hash(step.image_hash);
+    if (row.image_sha256 != to_hex(trace.steps.front().image_hash))
+      return not_of("image_sha256", "the pictures in this trace");
+    if (row.frames_sha256 != to_hex(frames.finish()))
+      return not_of("frames_sha256", "the pictures in this trace");
+  }
+  if (row.sent_prompt_sha256.has_value() != row.sent_image_sha256.has_value()) {
+    return "its result row has one of `sent_prompt_sha256` and `sent_image_sha256` without the "
+           "other";
+  }
+  if (!row.sent_prompt_sha256) return "";
+  if (!policy::can_be_sent_as(prompt, *row.sent_prompt_sha256))
+    return not_of("sent_prompt_sha256", "a text that the instruction can be sent as");
+  return is_hash(*row.sent_image_sha256) ? "" : no_hash("sent_image_sha256");
 }
 
 std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace& trace) {
@@ -61,7 +101,7 @@ std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace
     return "the stored plan has no such episode";
   }
   const std::size_t steps = trace.steps.size();
-  if (static_cast<std::size_t>(std::max(row.steps, 0)) != steps) {
+  if (std::cmp_not_equal(row.steps, steps)) {
     return "this trace has " + std::to_string(steps) + " steps, its result row says " +
            std::to_string(row.steps);
   }
@@ -73,6 +113,7 @@ std::string difference(const plan::Plan& plan, const ResultRow& row, const Trace
     return "this trace has " + std::to_string(steps) + " of the task's " +
            std::to_string(record.horizon) + " steps and gives no reason";
   }
+  if (std::string wrong = wrong_hash(row, trace); !wrong.empty()) return wrong;
   if (is_judged_so(plan, *task, trace)) return "";
   return "its verdicts are not what its own plan says of its measurements";
 }

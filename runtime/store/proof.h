@@ -13,9 +13,9 @@
 
 namespace probe::store {
 
-// The row's trace. Fails (kTrace, where = its file) unless it is whole, the one the row was made
-// with (read_stored_trace), of an episode of `plan`, as long as the row says and a valid one as
-// long as the task, with verdicts that the plan's metrics give for its measurements at every step.
+// The row's trace. Fails (kTrace, where = its file) unless it is whole, the row's own
+// (read_stored_trace), of an episode of `plan`, as long as the row says and a valid one as long as
+// the task, told and shown what the row's hashes say, with the verdicts that the plan gives it.
 Result<Trace> prove(const plan::Plan& plan, const ResultRow& row);
 
 // What a row has of its task and of the last step of its trace, which bears it: `idle`, `delay`,

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "runtime/store/trace.h"
 #include "tests/runtime/plan/small_plan.h"
 
@@ -37,6 +39,8 @@ inline store::Trace made_trace(const plan::Plan& plan, std::uint32_t task) {
   trace.start->starts[3].opening = {0, 1, 0};
   for (std::uint32_t i = 1; i <= record.horizon; ++i) {
     store::TraceStep step;
+    step.prompt_hash = sha256(trace.header.prompt);
+    step.image_hash = sha256("picture " + std::to_string(i));
     step.action = policy::Action::zeros(robot::kActionSize);
     step.sample.bodies.resize(bodies);
     step.sample.step = i;

@@ -46,6 +46,13 @@ Stored stored(const plan::Plan& plan, const std::string& path,
   row.metrics = trace.end->metrics;
   row.steps = static_cast<int>(trace.end->steps);
   row.invalid = trace.end->invalid;
+  row.prompt_sha256 = to_hex(sha256(trace.header.prompt));
+  if (row.steps > 0) {
+    row.image_sha256 = to_hex(trace.steps.front().image_hash);
+    Hasher frames;
+    for (const store::TraceStep& step : trace.steps) frames.hash(step.image_hash);
+    row.frames_sha256 = to_hex(frames.finish());
+  }
   row.trace_sha256 = to_hex(*hash);
   row.start_id = to_hex(trace.header.start_id);
   row.episode_id = to_hex(trace.header.episode_id);
@@ -85,6 +92,78 @@ TEST_CASE("a trace is proven by its row, its header and the verdicts of its own 
         "trace: this trace ended with other verdicts than its result row says");
 }
 
+TEST_CASE("a row says of instruction and pictures what its trace says, or it is refused") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = small();
+  const std::string path = folder / "a.trace";
+  const store::ResultRow good = stored(plan, path).row;
+  const std::string prompt(plan.text(plan.tasks()[0].prompt)), other(64, 'a');
+  const auto message = [&](auto&& change) {
+    store::ResultRow row = good;
+    change(row);
+    const auto trace = store::prove(plan, row);
+    return trace.ok() ? std::string() : trace.failure().message;
+  };
+  const auto not_of = [](const std::string& column, const std::string& what) {
+    return "its result row's `" + column + "` is not that of " + what;
+  };
+  const std::string said = "the instruction that this trace was told",
+                    pictures = "the pictures in this trace";
+  CHECK(message([](store::ResultRow&) {}).empty());
+  CHECK(message([&](store::ResultRow& r) { r.prompt_sha256 = other; }) ==
+        not_of("prompt_sha256", said));
+  CHECK(message([&](store::ResultRow& r) { r.image_sha256 = other; }) ==
+        not_of("image_sha256", pictures));
+  CHECK(message([](store::ResultRow& r) { r.image_sha256.clear(); }) ==
+        not_of("image_sha256", pictures));
+  CHECK(message([&](store::ResultRow& r) { r.frames_sha256 = other; }) ==
+        not_of("frames_sha256", pictures));
+  CHECK(message([](store::ResultRow& r) { r.frames_sha256.clear(); }) ==
+        not_of("frames_sha256", pictures));
+
+  // What left for a server is the instruction as some profile writes it; of the pictures it is in
+  // the row alone.
+  const auto sent = [&](const std::string& text, const std::optional<std::string>& image) {
+    return message([&](store::ResultRow& r) {
+      r.sent_prompt_sha256 = to_hex(sha256(text));
+      r.sent_image_sha256 = image;
+    });
+  };
+  CHECK(sent(prompt, other).empty());
+  CHECK(sent(prompt + ".", other).empty());
+  CHECK(sent(prompt + "!", other) ==
+        not_of("sent_prompt_sha256", "a text that the instruction can be sent as"));
+  const std::string no_hash = "its result row's `sent_image_sha256` is no hash";
+  CHECK(sent(prompt, "\x1b[31m") == no_hash);
+  CHECK(sent(prompt, std::string(64, 'A')) == no_hash);
+  CHECK(sent(prompt, std::nullopt) ==
+        "its result row has one of `sent_prompt_sha256` and `sent_image_sha256` without the other");
+  // Rows of older programs and of policies in this process have neither.
+  CHECK(!good.sent_prompt_sha256);
+}
+
+TEST_CASE("an episode that failed at its first picture has a hash of that picture or none") {
+  run::TemporaryFolder folder;
+  const plan::Plan plan = small();
+  const store::ResultRow good = stored(plan, folder / "a.trace", [](store::Trace& t) {
+                                  t.steps.clear();
+                                  t.end->steps = 0;
+                                  t.end->invalid = "policy: gone";
+                                }).row;
+  const auto is_borne = [&](const std::string& image, const std::string& frames, int steps) {
+    store::ResultRow row = good;
+    row.image_sha256 = image;
+    row.frames_sha256 = frames;
+    row.steps = steps;
+    return store::prove(plan, row).ok();
+  };
+  CHECK(is_borne("", "", 0));
+  CHECK(is_borne(std::string(64, 'a'), "", 0));
+  CHECK(!is_borne("a picture", "", 0));
+  CHECK(!is_borne("", std::string(64, 'a'), 0));
+  CHECK(!is_borne("", "", -1));
+}
+
 TEST_CASE("a forger who seals a trace with fresh hashes is found by judging it again") {
   run::TemporaryFolder folder;
   const plan::Plan plan = small();
@@ -100,6 +179,8 @@ TEST_CASE("a forger who seals a trace with fresh hashes is found by judging it a
   CHECK(message([](store::Trace& t) { t.steps[20].metrics[0] = 0; }) == lies);
   // A measurement that decides.
   CHECK(message([](store::Trace& t) { t.steps[2].sample.tcp.x() = 0.3; }) == lies);
+  // An instruction in the middle that is not the episode's.
+  CHECK(message([](store::Trace& t) { t.steps[2].prompt_hash.bytes[0] ^= 1; }) == lies);
   CHECK(message([](store::Trace& t) { t.header.plan_root.bytes[0] ^= 1; }) ==
         "this trace was not made under the stored plan");
   CHECK(message([](store::Trace& t) { t.steps.pop_back(), --t.end->steps; }) ==

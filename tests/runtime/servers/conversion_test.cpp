@@ -8,10 +8,13 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/base/sha256.h"
+#include "runtime/policy/sent_prompt.h"
 #include "runtime/robot/control.h"
 #include "runtime/robot/rotation.h"
 #include "runtime/servers/profile_check.h"
 #include "runtime/servers/profile_library.h"
+#include "runtime/servers/profile_words.h"
 #include "runtime/servers/server_policy.h"
 #include "tests/runtime/robot/test_robots.h"
 
@@ -197,6 +200,20 @@ TEST_CASE("prompts follow the profile's text rule") {
   CHECK(to_prompt(profile, "Put carrot on plate") == "put carrot on plate.");
   profile.prompt_full_stop = FullStop::kWithout;
   CHECK(to_prompt(profile, "Put carrot on plate.") == "put carrot on plate");
+}
+
+TEST_CASE("however a profile writes an instruction, a stored run takes it for that one") {
+  Profile profile;
+  for (const auto& letters : words_of(PromptCase{})) {
+    for (const auto& stop : words_of(FullStop{})) {
+      profile.prompt_case = letters.value;
+      profile.prompt_full_stop = stop.value;
+      for (const char* prompt : {"Put Carrot on Plate.", "put Carrot on plate"}) {
+        const Sha256 sent = sha256(to_prompt(profile, prompt));
+        CHECK(policy::can_be_sent_as(prompt, to_hex(sent)));
+      }
+    }
+  }
 }
 
 TEST_CASE("answers of every honest shape are actions, others say what was expected") {

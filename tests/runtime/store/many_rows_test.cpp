@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "runtime/base/file.h"
@@ -98,6 +99,22 @@ TEST_CASE("names that are no texts are refused, not read for ever") {
   const auto rows = read_results(dir);
   REQUIRE(!rows.ok());
   CHECK(rows.failure().message.find("of another type than any run's") != std::string::npos);
+}
+
+TEST_CASE("a number beyond any run's is not cut to one that a run could have") {
+  TemporaryFolder folder;
+  const std::string dir = folder / "run";
+  REQUIRE(Store::open(dir, record_of(), plan_bytes()).ok());
+  change_database(dir,
+                  "insert into episodes select 'a', 0, 42, 1, '', '', 'p', '[]', 4294967356, null, "
+                  "'', '', '', '', '', null, null; "
+                  "insert into episodes select 'a', 1, 4294967338, 1, '', '', 'p', '[]', "
+                  "-9223372036854775807, null, '', '', '', '', '', null, null");
+  const auto rows = read_results(dir);
+  REQUIRE(rows.ok());
+  CHECK(rows->at(0).steps == std::numeric_limits<int>::max());
+  CHECK(rows->at(1).seed == std::numeric_limits<int>::max());
+  CHECK(rows->at(1).steps == std::numeric_limits<int>::min());
 }
 
 TEST_CASE("a proof is of a row and of its file as it is, and of no other") {
