@@ -117,6 +117,7 @@ Status choose(const std::vector<AnswerSource>& sources, std::map<Sha256, BestAns
                          "; nothing was merged",
                      sources[i].dir};
     }));
+    summary.unvouched += static_cast<int>(rows.refused());
     for (const std::string& sentence : rows.sentences())
       summary.notes.push_back(sources[i].dir + ": " + sentence);
   }

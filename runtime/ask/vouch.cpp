@@ -4,11 +4,12 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/ask/reading/likely_letters.h"
 #include "runtime/ask/plan_reading.h"
 #include "runtime/ask/prepared.h"
 #include "runtime/ask/queries.h"
+#include "runtime/ask/reading/likely_letters.h"
 #include "runtime/ask/wording.h"
+#include "runtime/base/printable.h"
 #include "runtime/base/sha256.h"
 #include "runtime/plan/family_name.h"
 #include "runtime/plan/ids.h"
@@ -19,6 +20,7 @@ namespace {
 
 // Begins the reason of a row that cannot be vouched for.
 constexpr std::string_view kUnvouched = "store: ";
+constexpr std::size_t kLongestReason = 400;
 
 std::string does_not_follow(std::string_view cell, std::string_view from) {
   return "its `" + std::string(cell) + "` does not follow from " + std::string(from);
@@ -86,8 +88,12 @@ Voucher::Voucher(const plan::Plan& plan, std::string model)
 void Voucher::vouch(AnswerRow& row) {
   std::string why = reason(row);
   if (why.empty()) return;
-  row.invalid = std::string(kUnvouched) + why;
+  row.invalid = std::string(kUnvouched) + printable(why, kLongestReason);
   row.right.reset();
+}
+
+bool is_unvouched(const AnswerRow& row) {
+  return row.invalid && row.invalid->starts_with(kUnvouched);
 }
 
 // Why the row cannot be what asking stored; empty where it can.
@@ -114,7 +120,12 @@ std::string Voucher::reason(AnswerRow& row) {
   if (is_end != (row.seed >= 0))
     return is_end ? "it is asked at an episode's end and names none"
                   : "it is asked of starts alone";
-  if (row.invalid) return {};
+  if (row.invalid) {
+    // What asking gave up on has nothing that came; what a merge wrote keeps its reason.
+    const bool has_come =
+        row.right || !row.raw.empty() || !row.reasoning.empty() || !row.request_sha256.empty();
+    return has_come && !is_unvouched(row) ? "it is said to be invalid and holds an answer" : "";
+  }
   if (!row.right) return "it is neither right nor wrong";
   if (std::string why = impossible_figure(row, rotations == 1 ? 0 : rotations); !why.empty())
     return why;
@@ -229,7 +240,7 @@ std::string Voucher::judge_again(AnswerRow& row, std::uint32_t question, const R
 void RowFindings::add(const AnswerRow& row) {
   if (row.reader != kReaderVersion) ++read_anew_;
   constexpr std::size_t kMostKept = 100;  // reasons that name ids may be as many as rows
-  if (!row.invalid || !row.invalid->starts_with(kUnvouched)) return;
+  if (!is_unvouched(row)) return;
   ++refused_;
   if (reasons_.size() < kMostKept || reasons_.contains(*row.invalid)) ++reasons_[*row.invalid];
 }

@@ -48,6 +48,9 @@ class Voucher {
   std::map<std::pair<std::uint32_t, std::uint32_t>, Order> orders_;  // by question, rotation
 };
 
+// Whether it is invalid since it, or what was merged into its folder, did not follow.
+bool is_unvouched(const AnswerRow& row);
+
 // What is to be told of a folder's rows, as they come from for_each_answer.
 class RowFindings {
  public:
@@ -55,6 +58,7 @@ class RowFindings {
   // How many another version of the reader read, and what cannot be vouched for: a few of the
   // reasons, with their counts.
   std::vector<std::string> sentences() const;
+  std::int64_t refused() const { return refused_; }
 
  private:
   std::int64_t read_anew_ = 0, refused_ = 0;

@@ -23,6 +23,7 @@ struct MergeSummary {
   int invalid = 0;     // rows in `out` that are neither valid nor
   NotAttempted not_attempted;
   int left_out = 0;  // rows that their traces do not show, each named in `notes`
+  int unvouched = 0;  // answers that do not follow from what they hold: invalid in `out`
   std::vector<std::string> notes;
 };
 

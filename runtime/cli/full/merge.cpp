@@ -27,6 +27,11 @@ int merge_verb(const store::MergeOptions& options) {
   if (summary->not_attempted.count() > 0)
     say("{} of them were not attempted: {}\n", summary->not_attempted.count(),
         store::to_text(summary->not_attempted));
+  if (summary->unvouched > 0) {
+    say("vlaprobe: {} answers count neither way, because they do not follow from what they hold\n",
+        summary->unvouched);
+    return kOutside;
+  }
   if (summary->left_out == 0) return kFine;
   say("vlaprobe: {} rows were left out, because their traces do not show them\n",
       summary->left_out);

@@ -1,10 +1,14 @@
 // vlaprobe why
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "runtime/ask/answers.h"
+#include "runtime/ask/vouch.h"
 #include "runtime/ask/why_answer.h"
 #include "runtime/base/json.h"
 #include "runtime/base/printable.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/rejudge/explain.h"
@@ -22,7 +26,7 @@ struct WhyArguments {
 };
 
 void print_metric(const rejudge::MetricWhy& metric) {
-  put("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
+  put_words("{} = {} {} ({})\n", metric.name, metric.shown, metric.when, metric.readout);
   const auto left = [](const rejudge::Condition& c) {
     return c.bodies.empty() ? c.text : c.text + "  [" + c.bodies + "]";
   };
@@ -33,13 +37,13 @@ void print_metric(const rejudge::MetricWhy& metric) {
   }
   const std::string* file = nullptr;
   for (const rejudge::Condition& c : metric.conditions) {
-    if (!c.file.empty() && (file == nullptr || *file != c.file)) put("  {}\n", c.file);
+    if (!c.file.empty() && (file == nullptr || *file != c.file)) put_words("  {}\n", c.file);
     file = &c.file;
     // What did not decide stands without the mark.
-    put("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
-        c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
-        c.is_number ? "" : (c.truth ? "true" : "false"),
-        c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
+    put_words("{:>6} {} {:<{}}  {:<{}}  {}{}\n", c.line > 0 ? std::to_string(c.line) : "",
+              c.decides ? '>' : '|', left(c), text_width, c.measured, measured_width,
+              c.is_number ? "" : (c.truth ? "true" : "false"),
+              c.alike > 0 ? fmt::format("  and {} alike", c.alike) : "");
   }
 }
 
@@ -56,34 +60,39 @@ void print_answer(const ask::AnswerRow& row) {
                               : !row.right ? std::string("neither right nor wrong is stored")
                               : *row.right ? "right"
                                            : "wrong, right is " + shown(row.expected);
-  put("  {:<14} \"{}\"  {}{}{}: {}\n", which, shown(row.raw),
-      row.reader == ask::kReaderVersion ? "" : "read anew as ", ask::word_of(row.reading.verdict),
-      row.reading.rule.empty() ? "" : " by \"" + row.reading.rule + "\"", verdict);
+  put_words("  {:<14} \"{}\"  {}{}{}: {}\n", which, shown(row.raw),
+            row.reader == ask::kReaderVersion ? "" : "read anew as ",
+            ask::word_of(row.reading.verdict),
+            row.reading.rule.empty() ? "" : " by \"" + shown(row.reading.rule) + "\"", verdict);
 }
 
 int why_answers_verb(const WhyArguments& arguments) {
   const auto why = ask::why_answers(arguments.dir, arguments.task, arguments.episode,
                                     arguments.seed, arguments.question);
   if (!why) return report(why.failure());
+  bool is_borne = true;
+  for (const ask::AnswerWhy& question : why->questions)
+    is_borne = is_borne && std::ranges::none_of(question.answers, ask::is_unvouched);
+  const int exit = is_borne ? kFine : kOutside;
   if (arguments.json) {
     put("{}\n", ask::to_json(*why).dump(1));
-    return kFine;
+    return exit;
   }
-  put("{} episode {}, \"{}\", asked of {}\n", why->task, why->episode, why->prompt,
-      shown(why->model));
+  put_words("{} episode {}, \"{}\", asked of {}\n", why->task, why->episode, why->prompt,
+            shown(why->model));
   const auto print_place = [](const char* what, const std::optional<ask::Written>& place) {
-    if (place) put("  {:<14} {}:{}: {}\n", what, place->file, place->line, place->text);
+    if (place) put_words("  {:<14} {}:{}: {}\n", what, place->file, place->line, place->text);
   };
   for (const ask::AnswerWhy& question : why->questions) {
-    put("\n{}: {}\n", question.question, question.text);
+    put_words("\n{}: {}\n", question.question, question.text);
     print_place("asked at", question.asked_at);
-    put("  {:<14} {}\n", "the truth is", question.truth);
+    put_words("  {:<14} {}\n", "the truth is", question.truth);
     print_place("right is", question.right_at);
-    for (const std::string& reason : question.left_out) put("  not asked: {}\n", reason);
+    for (const std::string& reason : question.left_out) put_words("  not asked: {}\n", reason);
     for (const ask::AnswerRow& row : question.answers) print_answer(row);
-    if (question.answers.empty() && question.left_out.empty()) put("  not answered yet\n");
+    if (question.answers.empty() && question.left_out.empty()) put_words("  not answered yet\n");
   }
-  return kFine;
+  return exit;
 }
 
 int why_verb(const WhyArguments& arguments) {
@@ -104,21 +113,21 @@ int why_verb(const WhyArguments& arguments) {
     put("{}\n", rejudge::to_json(*why).dump(1));
     return kFine;
   }
-  put("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
+  put_words("{} episode {} seed {}, {} steps\n", why->task, why->episode, why->seed, why->steps);
   if (why->invalid)
-    put("{}{}\n", store::is_not_attempted(*why->invalid) ? "" : "invalid: ", *why->invalid);
-  if (why->remark) put("the policy says: {}\n", shown(*why->remark));
+    put_words("{}{}\n", store::is_not_attempted(*why->invalid) ? "" : "invalid: ", *why->invalid);
+  if (why->remark) put_words("the policy says: {}\n", shown(*why->remark));
   for (const rejudge::ClaimWhy& claim : why->claims) {
     std::string denoted;
     for (const std::string& object : claim.denoted)
       denoted += (denoted.empty() ? "" : " and ") + object;
-    put("\"{}\" is {}: in the settled start it denotes {}\n", claim.text, claim.object,
-        denoted.empty() ? "nothing" : denoted);
+    put_words("\"{}\" is {}: in the settled start it denotes {}\n", claim.text, claim.object,
+              denoted.empty() ? "nothing" : denoted);
   }
   // Of what was not attempted there is nothing to judge.
   if (why->steps == 0 && why->invalid && store::is_not_attempted(*why->invalid)) return kFine;
   for (const rejudge::MetricWhy& metric : why->metrics) {
-    put("\n");
+    put_words("\n");
     print_metric(metric);
   }
   if (!why->metrics.empty()) say("`>`: it made the metric what it is; `|`: it did not\n");
