@@ -9,6 +9,7 @@
 #include "runtime/assets/mujoco_folder.h"
 #include "runtime/assets/pack.h"
 #include "runtime/base/asset_root.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 
@@ -42,7 +43,7 @@ int import_verb(AssetsArguments& arguments) {
   std::map<assets::Verdict, std::size_t> counts;
   for (const assets::ImportLine& line : imported->lines) {
     ++counts[line.verdict];
-    put("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
+    put_words("{:<8} {}  {}\n", assets::to_word(line.verdict), line.name, line.text);
   }
   using enum assets::Verdict;
   const std::string own =
@@ -80,7 +81,7 @@ void add_pack(Verb assets, int& exit) {
       exit = report(packed.failure());
       return;
     }
-    put("{}: {}\n", options->to, packed->made);
+    put_words("{}: {}\n", options->to, packed->made);
     for (const std::string& doubt : packed->doubts) say("note: {}\n", doubt);
     if (!packed->text.empty()) put("{}", packed->text);
     if (!packed->found.empty()) say("note: {}\n", packed->found);
@@ -132,7 +133,8 @@ void add_mujoco(Verb assets, int& exit) {
       exit = report(made.failure());
       return;
     }
-    for (const assets::MujocoLine& line : made->lines) put("{:<8} {}\n", line.word, line.text);
+    for (const assets::MujocoLine& line : made->lines)
+      put_words("{:<8} {}\n", line.word, line.text);
     say("{}: {} files, {:.1f} MB\n", chosen.to, made->files,
         static_cast<double>(made->bytes) / 1e6);
     exit = kFine;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/base/file.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/notes.h"
 #include "runtime/cli/full/verbs.h"
@@ -36,7 +37,7 @@ int compare_rates(const CompareArguments& arguments) {
   if (arguments.json) {
     put("{}\n", report::agreement_json(*table).dump(1));
   } else {
-    put("{}", report::agreement_text(*table));
+    put_words("{}", report::agreement_text(*table));
   }
   return kFine;
 }
@@ -50,7 +51,7 @@ int compare_two_searches(const CompareArguments& arguments) {
   if (arguments.json) {
     put("{}\n", report::to_json(*compared).dump(1));
   } else {
-    put("{}", report::to_text(*compared));
+    put_words("{}", report::to_text(*compared));
   }
   return kFine;
 }
@@ -85,7 +86,7 @@ int compare_verb(const CompareArguments& arguments) {
   if (arguments.json) {
     put("{}\n", report::to_json(compared->benchmark, compared->comparison).dump(1));
   } else {
-    put("{}", report::to_text(compared->benchmark, compared->comparison));
+    put_words("{}", report::to_text(compared->benchmark, compared->comparison));
   }
   return kFine;
 }

@@ -1,5 +1,6 @@
 // vlaprobe export
 #include "runtime/export/export.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 
 #include <fmt/format.h>
@@ -122,8 +123,8 @@ int check_dataset(const ExportArguments& arguments) {
           ? ""
           : fmt::format(", but for the pictures of {}, which were not drawn again",
                         checked->not_redrawn);
-  put("{}: {} episodes of {} demonstrations, {} frames are as their traces{}\n", arguments.check,
-      checked->episodes, checked->demonstrations, checked->frames, unseen);
+  put_words("{}: {} episodes of {} demonstrations, {} frames are as their traces{}\n",
+            arguments.check, checked->episodes, checked->demonstrations, checked->frames, unseen);
   return kFine;
 }
 

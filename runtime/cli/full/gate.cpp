@@ -5,6 +5,7 @@
 
 #include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/share.h"
 #include "runtime/cli/full/verbs.h"
@@ -44,7 +45,7 @@ int gate_verb(GateArguments& arguments) {
   if (arguments.json) {
     put("{}\n", to_json(*gate).dump(1));
   } else {
-    put("{}", to_text(*gate));
+    put_words("{}", to_text(*gate));
   }
   if (gate->is_worse() || (arguments.decided && !gate->is_decided())) return kUser;
   return kFine;

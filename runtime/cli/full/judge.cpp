@@ -7,6 +7,7 @@
 
 #include "runtime/adaptive/sampled.h"
 #include "runtime/base/json.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
@@ -98,17 +99,18 @@ std::string after_alone(const rejudge::RejudgeReport& report, const std::string&
 void print_table(const rejudge::RejudgeReport& report) {
   std::size_t width = 6;
   for (const rejudge::MetricChange& m : report.metrics) width = std::max(width, m.name.size());
-  put("{:<{}}  {:>9}  {:>9}  {:>6}  {:>6}\n", "metric", width, "before", "after", "lost", "gained");
+  put_words("{:<{}}  {:>9}  {:>9}  {:>6}  {:>6}\n", "metric", width, "before", "after", "lost",
+            "gained");
   for (const rejudge::MetricChange& m : report.metrics) {
     if (m.episodes == 0) {
-      put("{:<{}}  {:>9}  {:>9}\n", m.name, width, m.only_before > 0 ? "judged" : "-",
-          m.only_after > 0 ? after_alone(report, m.name) : "-");
+      put_words("{:<{}}  {:>9}  {:>9}\n", m.name, width, m.only_before > 0 ? "judged" : "-",
+                m.only_after > 0 ? after_alone(report, m.name) : "-");
     } else if (m.is_bool) {
-      put("{:<{}}  {:>4} / {:<2}  {:>4} / {:<2}  {:>6}  {:>6}\n", m.name, width, m.before,
-          m.episodes, m.after, m.episodes, m.lost, m.gained);
+      put_words("{:<{}}  {:>4} / {:<2}  {:>4} / {:<2}  {:>6}  {:>6}\n", m.name, width, m.before,
+                m.episodes, m.after, m.episodes, m.lost, m.gained);
     } else {
-      put("{:<{}}  {:>9.4g}  {:>9.4g}  {:>6} of {} changed\n", m.name, width, m.mean_before,
-          m.mean_after, m.changed, m.episodes);
+      put_words("{:<{}}  {:>9.4g}  {:>9.4g}  {:>6} of {} changed\n", m.name, width, m.mean_before,
+                m.mean_after, m.changed, m.episodes);
     }
   }
 }
@@ -123,7 +125,7 @@ void print_cells(const std::vector<std::vector<std::string>>& rows) {
   for (const auto& row : rows) {
     std::string line = fmt::format("{:<{}}", row[0], widths[0]);
     for (std::size_t i = 1; i < row.size(); ++i) line += fmt::format("  {:>{}}", row[i], widths[i]);
-    put("{}\n", line);
+    put_words("{}\n", line);
   }
 }
 

@@ -1,6 +1,7 @@
 // vlaprobe libero import, vlaprobe libero fidelity
 #include "runtime/base/asset_root.h"
 #include "runtime/base/counted.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/libero/fidelity.h"
@@ -15,7 +16,8 @@ int import_libero(libero::ImportOptions& options) {
   options.own = own->folders().front();
   const auto imported = libero::import_libero(options);
   if (!imported) return report(imported.failure());
-  for (const libero::ImportLine& line : imported->lines) put("{:<8} {}\n", line.word, line.text);
+  for (const libero::ImportLine& line : imported->lines)
+    put_words("{:<8} {}\n", line.word, line.text);
   say("{}: {}, {}; {} files, {:.1f} MB\n", options.to, counted(imported->tasks, "task"),
       counted(imported->starts, "start"), imported->files, static_cast<double>(imported->bytes) / 1e6);
   if (imported->broken > 0) {
@@ -33,13 +35,14 @@ int tell_fidelity(const libero::FidelityOptions& options, bool lists_all) {
   if (!rows) return report(rows.failure());
   bool is_held = true;
   for (const libero::FidelityRow& row : *rows) {
-    put("{:<38} {:<13} bar {}\n", row.what, libero::to_text(row.held), row.bar);
-    if (!row.figure.empty()) put("  {}\n", row.figure);
-    put("  {}\n", row.how);
+    put_words("{:<38} {:<13} bar {}\n", row.what, libero::to_text(row.held), row.bar);
+    if (!row.figure.empty()) put_words("  {}\n", row.figure);
+    put_words("  {}\n", row.how);
     constexpr std::size_t kFew = 5;
     const std::size_t shown = lists_all ? row.others.size() : std::min(kFew, row.others.size());
-    for (std::size_t i = 0; i < shown; ++i) put("    {}\n", row.others[i]);
-    if (shown < row.others.size()) put("    and {} more: `--all`\n", row.others.size() - shown);
+    for (std::size_t i = 0; i < shown; ++i) put_words("    {}\n", row.others[i]);
+    if (shown < row.others.size())
+      put_words("    and {} more: `--all`\n", row.others.size() - shown);
     is_held = is_held && row.held != libero::Held::kNo;
   }
   return is_held ? kFine : kOutside;

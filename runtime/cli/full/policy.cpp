@@ -5,6 +5,7 @@
 
 #include "runtime/assets/output_file.h"
 #include "runtime/base/file.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/run_options.h"
 #include "runtime/cli/full/until_ended.h"
@@ -32,7 +33,7 @@ int test_verb(const PolicyArguments& arguments) {
   if (arguments.json) {
     put("{}\n", servers::to_json(*tested));
   } else {
-    put("{}", servers::to_text(*tested));
+    put_words("{}", servers::to_text(*tested));
   }
   return tested->is_wrong() ? kOutside : kFine;
 }
@@ -84,8 +85,8 @@ int profiles_verb(const PolicyArguments& arguments) {
     for (const servers::ProfileText& ready : servers::ready_profiles()) {
       const auto profile = servers::find_profile(ready.name);
       if (!profile) return report(profile.failure());
-      put("{:<{}}  {:<11}{}\n", ready.name, width, servers::to_word(profile->protocol),
-          profile->about);
+      put_words("{:<{}}  {:<11}{}\n", ready.name, width, servers::to_word(profile->protocol),
+                profile->about);
     }
     return kFine;
   }

@@ -1,5 +1,6 @@
 // vlaprobe replay
 #include "runtime/run/replay.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 
 #include <fmt/format.h>
@@ -38,8 +39,8 @@ int replay_verb(const ReplayArguments& arguments) {
     say("vlaprobe: {} differs from its trace: {}\n", name, report_or->difference);
     return kOutside;
   }
-  put("{}: {} steps {}\n", name, report_or->steps,
-      options.verify ? "identical, bit for bit" : "repeated");
+  put_words("{}: {} steps {}\n", name, report_or->steps,
+            options.verify ? "identical, bit for bit" : "repeated");
   return kFine;
 }
 

@@ -8,6 +8,7 @@
 
 #include "runtime/adaptive/sampled.h"
 #include "runtime/ask/answers.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/answer_results.h"
 #include "runtime/cli/full/follow.h"
@@ -36,9 +37,9 @@ struct ResultsArguments {
 void print_readings(const std::string& dir) {
   const auto summary = store::read_reading_summary(dir);
   if (!summary) return;
-  for (const std::string& finding : summary->findings) put("{}\n", finding);
-  if (!summary->good.empty()) put("{}\n", summary->good);
-  for (const std::string& sentence : summary->batches) put("{}\n", sentence);
+  for (const std::string& finding : summary->findings) put_words("{}\n", finding);
+  if (!summary->good.empty()) put_words("{}\n", summary->good);
+  for (const std::string& sentence : summary->batches) put_words("{}\n", sentence);
 }
 
 // Rows that their traces do not bear; the exit that they leave.
@@ -50,13 +51,14 @@ int say_refused(const store::ProvenRun& proven) {
 // Of a world that did not wait for its policy.
 void print_live(const store::ProvenRun& proven) {
   if (proven.live_terms.empty()) return;
-  put("{}\n", proven.live_terms);
-  put("live: {}\n", to_text(proven.live));
+  put_words("{}\n", proven.live_terms);
+  put_words("live: {}\n", to_text(proven.live));
 }
 
 // Of a run that stops by what it finds: what may be said of its rates.
 void print_until(const adaptive::Summarizer& sums, bool is_long) {
-  for (const std::string& line : adaptive::to_lines(sums.summary(), is_long)) put("{}\n", line);
+  for (const std::string& line : adaptive::to_lines(sums.summary(), is_long))
+    put_words("{}\n", line);
 }
 
 // How the questions of the folder's calls went, where they went together.
@@ -64,15 +66,15 @@ void print_batches(const std::string& dir) {
   const auto calls = store::read_run_calls(dir);
   if (!calls) return;
   for (const store::RunCall& call : *calls) {
-    if (call.queries.batches > 0) put("{}\n", store::to_text(call));
+    if (call.queries.batches > 0) put_words("{}\n", store::to_text(call));
   }
 }
 
 // In place of rates, which a folder of successes alone has none of.
 void print_successes(const std::string& dir,
                      const std::vector<std::pair<std::string, int>>& counts) {
-  put("{} {}\n", dir, store::kSuccessesAlone);
-  for (const auto& [task, count] : counts) put("{}: {} successes kept\n", task, count);
+  put_words("{} {}\n", dir, store::kSuccessesAlone);
+  for (const auto& [task, count] : counts) put_words("{}: {} successes kept\n", task, count);
 }
 
 // Whether what makes tasks different reached the policy.
@@ -104,12 +106,12 @@ int delivery_verb(const ResultsArguments& arguments) {
     put("{}\n", run::to_json(findings));
     return exit;
   }
-  for (const run::DeliveryFinding& finding : findings) put("{}\n", finding.sentence);
+  for (const run::DeliveryFinding& finding : findings) put_words("{}\n", finding.sentence);
   print_readings(arguments.dir);
   print_batches(arguments.dir);
   print_live(*proven);
   if (findings.empty()) {
-    put("every instruction and picture that should differ reached the policy different\n");
+    put_words("every instruction and picture that should differ reached the policy different\n");
   }
   return exit;
 }
@@ -168,7 +170,7 @@ int tally_verb(const ResultsArguments& arguments) {
     return exit;
   }
   const auto plan = rejudge::stored_plan(arguments.dir);
-  put("{}", tally.text(plan ? &*plan : nullptr, arguments.is_long));
+  put_words("{}", tally.text(plan ? &*plan : nullptr, arguments.is_long));
   if (sums) print_until(*sums, arguments.is_long);
   print_live(*proven);
   print_readings(arguments.dir);
@@ -216,7 +218,7 @@ int events_verb(ResultsArguments arguments) {
   } else if (arguments.csv) {
     put("{}", rejudge::events_to_csv(told));
   } else {
-    put("{}", rejudge::event_tally(told));
+    put_words("{}", rejudge::event_tally(told));
   }
   if (std::ranges::any_of(told, [](const auto& one) { return one.row.only_success; }))
     say("{} {}\n", arguments.dir, store::kSuccessesAlone);

@@ -3,6 +3,7 @@
 
 #include "runtime/base/digit_groups.h"
 #include "runtime/base/json.h"
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/verbs.h"
 
@@ -27,10 +28,11 @@ int du_verb(const RoomArguments& arguments) {
     }
     all.push_back({{"dir", dir}, {"bytes", bytes}, {"parts", std::move(parts)}});
     if (arguments.json) continue;
-    put("{}: {}\n", dir, store::bytes_text(bytes));
+    put_words("{}: {}\n", dir, store::bytes_text(bytes));
     for (const store::Room& room : *rooms) {
-      put("  {:<8} {:>8} in {} {}\n", room.what, store::bytes_text(room.bytes),
-          digit_groups(static_cast<std::size_t>(room.files)), room.files == 1 ? "file" : "files");
+      put_words("  {:<8} {:>8} in {} {}\n", room.what, store::bytes_text(room.bytes),
+                digit_groups(static_cast<std::size_t>(room.files)),
+                room.files == 1 ? "file" : "files");
     }
   }
   if (arguments.json) put("{}\n", all.dump(1));
@@ -51,7 +53,7 @@ int gc_verb(const RoomArguments& arguments) {
                      {"bytes", spare.bytes},
                      {"why", spare.why}});
       if (!arguments.json)
-        put("{}: {}, {}\n", spare.path, spare.why, store::bytes_text(spare.bytes));
+        put_words("{}: {}, {}\n", spare.path, spare.why, store::bytes_text(spare.bytes));
     }
     if (!arguments.yes) continue;
     if (auto removed = store::remove_spares(dir, *found); !removed)

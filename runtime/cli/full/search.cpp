@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "runtime/base/put_words.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/progress_printer.h"
 #include "runtime/cli/full/run_options.h"
@@ -26,7 +27,7 @@ int say_found(const search::SearchSummary& found, bool json) {
   if (json) {
     put("{}\n", found.findings.dump(1));
   } else {
-    for (const std::string& line : found.lines) put("{}\n", line);
+    for (const std::string& line : found.lines) put_words("{}\n", line);
   }
   return kFine;
 }

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "runtime/assets/output_file.h"
-#include "runtime/base/say.h"
+#include "runtime/base/put_words.h"
 #include "runtime/cli/full/verbs.h"
 #include "runtime/cli/load.h"
 #include "runtime/run/replay.h"
@@ -35,7 +35,7 @@ bool may_write(const SheetArguments& arguments, int& exit) {
 
 int written(const Status& status, const std::string& path) {
   if (!status) return report(status.failure());
-  put("{}\n", path);
+  put_words("{}\n", path);
   return kFine;
 }
 
