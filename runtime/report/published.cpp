@@ -40,6 +40,9 @@ bool is_beside(std::string_view column) {
 }
 
 constexpr std::size_t kLongestName = 1000;  // of a policy, bytes
+// What a page shows, and a thousand times what a paper prints.
+constexpr std::size_t kMostRows = 10'000, kMostColumns = 1000, kMostCells = 200'000;
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
 double percent(std::int64_t k, std::int64_t n) {
   return 100 * static_cast<double>(k) / static_cast<double>(n);
@@ -78,11 +81,22 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
           return Failure{Fault::kUsage, fmt::format("column `{}` stands twice", cells[i]), where};
         }
         table.columns.push_back(cells[i]);
+        if (table.columns.size() > kMostColumns) {
+          return Failure{Fault::kUsage,
+                         fmt::format("more than {} columns of percentages", kMostColumns), where};
+        }
       }
       table.header_line = number;
       has_header = true;
       continue;
     }
+    const std::size_t row_count = table.rows.size() + 1;
+    if (row_count > kMostRows)
+      return Failure{Fault::kUsage, fmt::format("more than {} rows of percentages", kMostRows),
+                     where};
+    if (row_count * table.columns.size() > kMostCells)
+      return Failure{Fault::kUsage, fmt::format("more than {} cells of percentages", kMostCells),
+                     where};
     if (cells.size() != kept.size() + 2) {
       return Failure{
           Fault::kUsage,
@@ -116,7 +130,8 @@ Result<PublishedTable> parse_published(std::string_view csv, const std::string& 
 }
 
 Result<PublishedTable> read_published(const std::string& path) {
-  PROBE_ASSIGN(const std::string text, read_file(path));
+  PROBE_ASSIGN(const std::string text,
+               read_file(path, {.most = kMostBytes, .code = Fault::kUsage, .only_begin = false}));
   return parse_published(text, path);
 }
 

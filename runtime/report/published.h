@@ -33,8 +33,8 @@ struct PublishedTable {
 
 // `policy,metric,COLUMN,...` and a line a policy and metric, percentages with or without "%"; the
 // counts and intervals of our own tables are passed over.
-// Fails (kUsage, where = source:line) on another layout, on a cell that is no percentage and
-// on a row or column that stands twice.
+// Fails (kUsage, where = source:line) on another layout, a cell that is no percentage, a row or
+// column that stands twice, more than 10,000 rows, 1000 columns or 200,000 cells.
 Result<PublishedTable> parse_published(std::string_view csv, const std::string& source);
 Result<PublishedTable> read_published(const std::string& path);
 

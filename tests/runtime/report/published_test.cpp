@@ -50,6 +50,24 @@ TEST_CASE("another layout is refused with its line") {
   CHECK(where("policy,metric,avg\n") == "x.csv");
 }
 
+TEST_CASE("a table of more than any page shows is refused where it gets too long") {
+  const auto said = [](int rows, int columns) {
+    std::string csv = "policy,metric";
+    for (int k = 0; k < columns; ++k) csv += ",c" + std::to_string(k);
+    for (int i = 0; i < rows; ++i) {
+      csv += "\np" + std::to_string(i) + ",success";
+      for (int k = 0; k < columns; ++k) csv += ",5";
+    }
+    const auto table = parse_published(csv, "x.csv");
+    return table.ok() ? std::string() : to_text(table.failure());
+  };
+  CHECK(said(10'000, 1).empty());
+  CHECK(said(10'001, 1) == "x.csv:10002: more than 10000 rows of percentages");
+  CHECK(said(1, 1000).empty());
+  CHECK(said(1, 1001) == "x.csv:1: more than 1000 columns of percentages");
+  CHECK(said(201, 1000) == "x.csv:202: more than 200000 cells of percentages");
+}
+
 TEST_CASE("what the runs do not have is told with its line and the nearest name") {
   Benchmark benchmark;
   benchmark.metrics = {{"success", true, 1}};
