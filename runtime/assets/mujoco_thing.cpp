@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "runtime/base/trig.h"
 #include "runtime/mjcf/mesh_file.h"
 
@@ -119,12 +121,26 @@ MujocoMeshes::MujocoMeshes(const mjcf::Model& model, scene::MeshLimits limits)
     : model_(model), limits_(std::move(limits)) {}
 
 Result<const scene::Mesh*> MujocoMeshes::get(int mesh) {
-  const auto known = meshes_.find(mesh);
-  if (known != meshes_.end()) return &known->second;
-  PROBE_ASSIGN(
-      scene::Mesh read,
-      mjcf::load_mesh_file(model_, model_.meshes[static_cast<std::size_t>(mesh)], limits_));
-  return &meshes_.emplace(mesh, std::move(read)).first->second;
+  // Seconds of work: each time that a mesh is asked for, something is made of its triangles.
+  constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30, kMostTriangles = 20'000'000;
+  const mjcf::MeshAsset& asset = model_.meshes[static_cast<std::size_t>(mesh)];
+  const auto too_much = [&](const std::string& what) {
+    return Failure{Fault::kAsset, "the meshes of all geoms together have more than " + what,
+                   model_.where(asset.at)};
+  };
+  auto known = meshes_.find(mesh);
+  if (known == meshes_.end()) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(asset.file, error);
+    if (!error) bytes_ += size;
+    if (bytes_ > kMostBytes) return too_much(std::to_string(kMostBytes >> 20) + " MiB");
+    PROBE_ASSIGN(scene::Mesh read, mjcf::load_mesh_file(model_, asset, limits_));
+    known = meshes_.emplace(mesh, std::move(read)).first;
+  }
+  for (const scene::MeshPart& part : known->second.parts) triangles_ += part.indices.size() / 3;
+  if (triangles_ > kMostTriangles)
+    return too_much(std::to_string(kMostTriangles / 1'000'000) + " million triangles");
+  return &known->second;
 }
 
 Result<MujocoThing> find_thing(const mjcf::Model& model, MujocoMeshes& meshes) {

@@ -1,6 +1,7 @@
 // The thing in a model: what is rigid in one link, with its mass, and joints between links.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -43,7 +44,8 @@ struct MujocoThing {
   std::vector<const mjcf::Geom*> of_world;  // geoms of the world itself
 };
 
-// Meshes are read once, when they are asked for.
+// Meshes are read once, when they are asked for. Fails (kAsset) as load_mesh_file does, and where
+// files together, or what was asked for with each mesh counted as often as it was, take minutes.
 class MujocoMeshes {
  public:
   explicit MujocoMeshes(const mjcf::Model& model, scene::MeshLimits limits);
@@ -53,6 +55,7 @@ class MujocoMeshes {
   const mjcf::Model& model_;
   scene::MeshLimits limits_;
   std::map<int, scene::Mesh> meshes_;
+  std::uintmax_t bytes_ = 0, triangles_ = 0;
 };
 
 // The thing as convert_mujoco says. A link's frame is its body's, moved to where its joint is.

@@ -20,6 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// More than a kitchen with a robot has; what is made of each takes kilobytes, and some is compared
+// each with each.
+constexpr std::size_t kMostBodies = 2048, kMostGeoms = 4096, kMostSites = 4096, kMostJoints = 4096,
+                      kMostLights = 1024, kMostCameras = 1024, kMostMeshes = 2048,
+                      kMostTextures = 1024, kMostMaterials = 2048;
+
 constexpr Rgba kUnsaidRgba{0.5, 0.5, 0.5, 1};
 
 struct ShapeWord {
@@ -118,6 +124,12 @@ class ModelReader {
 
   Failure fail(const At& at, std::string message) const {
     return {Fault::kAsset, std::move(message), document_.where(at)};
+  }
+
+  // One more of what there may be so many of.
+  Status count(std::size_t& counted, std::size_t most, const char* what, const Element& element) {
+    if (++counted <= most) return {};
+    return fail(element.at, fmt::format("more than {} {}", most, what));
   }
 
   Failure unknown(const Element& element, const char* within) const {
@@ -232,6 +244,7 @@ class ModelReader {
   }
 
   Status read_mesh(const Element& element) {
+    PROBE_TRY(count(meshes_, kMostMeshes, "meshes", element));
     PROBE_ASSIGN(const Values values, values_of(element, "main"));
     MeshAsset mesh;
     mesh.at = element.at;
@@ -259,6 +272,7 @@ class ModelReader {
   }
 
   Status read_texture(const Element& element) {
+    PROBE_TRY(count(textures_, kMostTextures, "textures", element));
     PROBE_ASSIGN(const Values values, values_of(element, "main"));
     Texture texture;
     texture.at = element.at;
@@ -306,6 +320,7 @@ class ModelReader {
   }
 
   Status read_material(const Element& element) {
+    PROBE_TRY(count(materials_, kMostMaterials, "materials", element));
     PROBE_ASSIGN(const Values values, values_of(element, "main"));
     Material material;
     material.at = element.at;
@@ -406,6 +421,7 @@ class ModelReader {
 
   Status read_body(const Element& element, std::size_t parent, std::string_view childclass,
                    const Pose& frame) {
+    PROBE_TRY(count(bodies_, kMostBodies, "bodies", element));
     PROBE_TRY(check_attributes(element));
     const Values values(document_, element);
     Body body;
@@ -462,6 +478,7 @@ class ModelReader {
 
   Status read_geom(const Element& element, std::size_t body, std::string_view childclass,
                    const Pose& frame) {
+    PROBE_TRY(count(geoms_, kMostGeoms, "geoms", element));
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
     Geom geom;
     geom.at = element.at;
@@ -518,6 +535,7 @@ class ModelReader {
 
   Status read_site(const Element& element, std::size_t body, std::string_view childclass,
                    const Pose& frame) {
+    PROBE_TRY(count(sites_, kMostSites, "sites", element));
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
     Site site;
     site.at = element.at;
@@ -536,6 +554,7 @@ class ModelReader {
 
   Status read_joint(const Element& element, std::size_t body, std::string_view childclass,
                     const Pose& frame) {
+    PROBE_TRY(count(joints_, kMostJoints, "joints", element));
     if (body == 0) return fail(element.at, "a joint of the world");
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
     Joint joint;
@@ -624,6 +643,7 @@ class ModelReader {
 
   Status read_camera(const Element& element, std::size_t body, std::string_view childclass,
                      const Pose& frame) {
+    PROBE_TRY(count(cameras_, kMostCameras, "cameras", element));
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
     check_mode(values, element);
     Camera camera;
@@ -641,6 +661,7 @@ class ModelReader {
 
   Status read_light(const Element& element, std::size_t body, std::string_view childclass,
                     const Pose& frame) {
+    PROBE_TRY(count(lights_, kMostLights, "lights", element));
     PROBE_ASSIGN(const Values values, values_of(element, childclass));
     check_mode(values, element);
     Light light;
@@ -671,6 +692,8 @@ class ModelReader {
   fs::path folder_;
   Model model_;
   std::vector<std::string> textures_of_;  // by material
+  std::size_t bodies_ = 0, geoms_ = 0, sites_ = 0, joints_ = 0, lights_ = 0, cameras_ = 0,
+              meshes_ = 0, textures_ = 0, materials_ = 0;
   std::set<std::string, std::less<>> body_names_, joint_names_, geom_names_, site_names_;
 };
 

@@ -229,6 +229,10 @@ Status Classes::add(const Document& document, const Element& element, const std:
   const std::string name = parent.empty() ? "main" : *said;
   if (!parent.empty() && has(name))
     return Failure{Fault::kAsset, "a second class `" + name + "`", document.where(element.at)};
+  constexpr std::size_t kMostClasses = 1024;
+  if (classes_.size() > kMostClasses)
+    return Failure{Fault::kAsset, fmt::format("more than {} classes", kMostClasses),
+                   document.where(element.at)};
   if (parent.empty() && said != nullptr && *said != "main") classes_[*said].parent = "main";
   classes_[name].parent = parent;
   for (const Element& child : element.children) {

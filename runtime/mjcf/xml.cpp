@@ -5,10 +5,10 @@
 #include <tinyxml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include "runtime/base/file.h"
+#include "runtime/base/xml_size.h"
 
 namespace probe::mjcf {
 namespace {
@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // TinyXML recurses once a level, and so does whoever walks over our tree.
-constexpr int kDeepest = 500;
-constexpr std::size_t kMostElements = 1'000'000;
+constexpr std::size_t kDeepest = 500;
+constexpr std::size_t kMostElements = 100'000;
 constexpr std::size_t kLongestText = std::size_t{64} << 20;
 
 class Reader {
@@ -69,20 +69,17 @@ class Reader {
     // TinyXML reads a C string and would not see what follows.
     if (text.find('\0') != text.npos)
       return Failure{Fault::kAsset, "not XML: a zero byte in it", path};
-    int depth = 0;
-    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
-      const char next = text[i + 1];
-      if (text[i] == '<' && (std::isalpha(static_cast<unsigned char>(next)) || next == '_')) {
-        ++depth;
-        ++elements_;
-      }
-      if ((text[i] == '<' && next == '/') || (text[i] == '/' && next == '>')) --depth;
-      if (depth > kDeepest)
-        return Failure{Fault::kAsset, fmt::format("elements nested deeper than {}", kDeepest),
-                       path};
-    }
-    if (elements_ <= kMostElements) return {};
-    return Failure{Fault::kAsset, fmt::format("more than {} elements", kMostElements), path};
+    const auto fail = [&](std::string message) {
+      return Failure{Fault::kAsset, std::move(message), path};
+    };
+    const XmlSize size = xml_size(text);
+    elements_ += size.elements;
+    if (size.is_odd) return fail("a `<?` that is no declaration");
+    if (size.depth > kDeepest) return fail(fmt::format("elements nested deeper than {}", kDeepest));
+    if (size.attributes > kMostXmlAttributes)
+      return fail(fmt::format("an element of more than {} attributes", kMostXmlAttributes));
+    if (elements_ > kMostElements) return fail(fmt::format("more than {} elements", kMostElements));
+    return {};
   }
 
   Result<Element> copy(const TiXmlElement& from, std::uint32_t file) {

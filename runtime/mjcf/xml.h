@@ -39,7 +39,7 @@ struct Document {
 // Files that are included are found beside the first one, as MuJoCo does; theirs is the content of
 // their root. Fails (kAsset, where = path or path:line) on a missing file, text that is not XML,
 // another root than `mujoco`, a file that is included twice or within itself, more than 64 MB or
-// 1,000,000 elements, or elements nested deeper than 500.
+// 100,000 elements, elements nested deeper than 500, one of more than 100 attributes.
 Result<Document> read_document(const std::string& path);
 
 }  // namespace probe::mjcf

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/base/xml_size.h"
 #include "runtime/robot/rotation.h"
 
 namespace probe::robot {
@@ -18,9 +19,9 @@ namespace {
 
 // TinyXML recurses once a level; a text nested deeper than this is no robot and could exhaust the
 // stack.
-constexpr int kDeepest = 500;
+constexpr std::size_t kDeepest = 500;
 // A humanoid with hands has a hundred links of ten elements; reading takes the square of the links.
-constexpr int kMostElements = 100'000;
+constexpr std::size_t kMostElements = 100'000;
 constexpr std::size_t kMostLinks = 1024;
 
 class Scanner {
@@ -28,7 +29,7 @@ class Scanner {
   Scanner(const std::string& text, const std::string& path) : text_(text), path_(path) {}
 
   Result<UrdfText> scan() {
-    PROBE_TRY(check_depth());
+    PROBE_TRY(check_size());
     TiXmlDocument document;
     document.Parse(text_.c_str(), nullptr, TIXML_ENCODING_UTF8);
     if (document.Error()) {
@@ -57,22 +58,17 @@ class Scanner {
  private:
   std::string at(int line) const { return fmt::format("{}:{}", path_, line); }
 
-  Status check_depth() const {
-    int depth = 0, elements = 0;
-    for (std::size_t i = 0; i + 1 < text_.size(); ++i) {
-      const char next = text_[i + 1];
-      if (text_[i] == '<' && std::isalpha(static_cast<unsigned char>(next))) {
-        ++depth;
-        if (++elements > kMostElements) {
-          return Failure{Fault::kUrdf, fmt::format("more than {} elements", kMostElements), path_};
-        }
-      }
-      if ((text_[i] == '<' && next == '/') || (text_[i] == '/' && next == '>')) --depth;
-      if (depth > kDeepest) {
-        return Failure{Fault::kUrdf, fmt::format("elements nested deeper than {}", kDeepest),
-                       path_};
-      }
-    }
+  Status check_size() const {
+    const auto fail = [&](std::string message) {
+      return Failure{Fault::kUrdf, std::move(message), path_};
+    };
+    const XmlSize size = xml_size(text_);
+    if (size.is_odd) return fail("a `<?` that is no declaration");
+    if (size.depth > kDeepest) return fail(fmt::format("elements nested deeper than {}", kDeepest));
+    if (size.elements > kMostElements)
+      return fail(fmt::format("more than {} elements", kMostElements));
+    if (size.attributes > kMostXmlAttributes)
+      return fail(fmt::format("an element of more than {} attributes", kMostXmlAttributes));
     return {};
   }
 

@@ -13,7 +13,9 @@
 
 #include "compiler/emit/compile.h"
 #include "runtime/assets/mujoco_folder.h"
+#include "runtime/assets/mujoco_thing.h"
 #include "runtime/base/file.h"
+#include "runtime/mjcf/read.h"
 #include "runtime/plan/plan.h"
 #include "runtime/robot/urdf.h"
 #include "runtime/scene/collision_mesh.h"
@@ -106,6 +108,23 @@ scene::Mesh mesh_of(const MjcfFolder& folder, const MujocoAsset& asset, const st
   INFO((mesh ? std::string() : to_text(mesh.failure())));
   REQUIRE(mesh.ok());
   return **mesh;
+}
+
+TEST_CASE(
+    "one mesh in ever more geoms is refused by its triangles, which are made something of each "
+    "time") {
+  const MjcfFolder folder;
+  write_cup(folder);
+  const auto model = mjcf::read_model(folder.path("cup.xml"));
+  REQUIRE_MESSAGE(model.ok(), to_text(model.failure()));
+  MujocoMeshes meshes(*model, scene::MeshLimits());
+  int uses = 0;
+  auto mesh = meshes.get(0);
+  for (; mesh.ok() && uses < 2'000'000; mesh = meshes.get(0)) ++uses;
+  REQUIRE(!mesh.ok());
+  CHECK(mesh.failure().message ==
+        "the meshes of all geoms together have more than 20 million triangles");
+  CHECK(uses == 20'000'000 / 12);
 }
 
 TEST_CASE(

@@ -324,6 +324,43 @@ TEST_CASE("bad input is refused with its file and line") {
   std::string deep = "<mujoco><worldbody>";
   for (int i = 0; i < 600; ++i) deep += "<body>";
   CHECK(failure_of(deep) == "/model.xml: elements nested deeper than 500");
+  // What looks like an end within a value, or a name that is no letter's, hides none.
+  deep = "<mujoco><worldbody>";
+  for (int i = 0; i < 600; ++i) deep += "<body name=\"/>\">";
+  CHECK(failure_of(deep) == "/model.xml: elements nested deeper than 500");
+}
+
+TEST_CASE("a file of more than any model has is refused before anything is made of it") {
+  const auto times = [](int count, std::string_view text) {
+    std::string all;
+    for (int i = 0; i < count; ++i) {
+      for (const char c : text) all += c == '#' ? std::to_string(i) : std::string(1, c);
+    }
+    return all;
+  };
+  const auto world = [&](int count, std::string_view text) {
+    return failure_of("<mujoco><worldbody>" + times(count, text) + "</worldbody></mujoco>");
+  };
+  const auto asset = [&](int count, std::string_view text) {
+    return failure_of("<mujoco><asset>" + times(count, text) + "</asset></mujoco>");
+  };
+  CHECK(world(4097, "<geom size=\"1\"/>") == "/model.xml:1: more than 4096 geoms");
+  CHECK(world(2049, "<body/>") == "/model.xml:1: more than 2048 bodies");
+  CHECK(world(4097, "<site/>") == "/model.xml:1: more than 4096 sites");
+  CHECK(world(1, "<body>" + times(4097, "<joint/>") + "</body>") ==
+        "/model.xml:1: more than 4096 joints");
+  CHECK(world(1025, "<light/>") == "/model.xml:1: more than 1024 lights");
+  CHECK(world(1025, "<camera/>") == "/model.xml:1: more than 1024 cameras");
+  CHECK(asset(2049, "<material name=\"m#\"/>") == "/model.xml:1: more than 2048 materials");
+  CHECK(asset(2049, "<mesh file=\"m#.obj\"/>") == "/model.xml:1: more than 2048 meshes");
+  CHECK(asset(1025, "<texture name=\"t#\" file=\"t.png\"/>") ==
+        "/model.xml:1: more than 1024 textures");
+  CHECK(failure_of("<mujoco><default>" + times(1025, "<default class=\"c#\"/>") +
+                   "</default></mujoco>") == "/model.xml:1: more than 1024 classes");
+  CHECK(failure_of("<mujoco>" + times(100'001, "<size/>") + "</mujoco>") ==
+        "/model.xml: more than 100000 elements");
+  CHECK(failure_of("<mujoco" + times(50'000, " a#=\"\"") + "/>") ==
+        "/model.xml: an element of more than 100 attributes");
 }
 
 }  // namespace

@@ -160,6 +160,14 @@ TEST_CASE("a file that is not there or is no XML is named") {
   std::string deep = "<robot name='r'>";
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   CHECK(load_message(deep) == "elements nested deeper than 500");
+  for (const char* one : {"<_>", "<a b='/>'>", "<a b=\"</\">", "<\xc3\xa9>"}) {
+    deep = "<robot name='r'>";
+    for (int i = 0; i < 50000; ++i) deep += one;
+    CHECK(load_message(deep) == "elements nested deeper than 500");
+  }
+  std::string wide = "<robot name='r'";
+  for (int i = 0; i < 50000; ++i) wide += " a" + std::to_string(i) + "=''";
+  CHECK(load_message(wide + "/>") == "an element of more than 100 attributes");
 }
 
 TEST_CASE("every truncation of a good file fails without a crash") {
