@@ -65,10 +65,10 @@ class Expert final : public policy::Policy {
   void end(const policy::EpisodeEnd& end) override {
     if (!started_ || !options_.close || !lack_.empty()) return;
     if (!is_all_done()) return note("it was not done when the episode ended");
-    // Then the solution is another than the goal, or something was moved that should not be.
+    // Then the solution does not bring what success asks for, or something else was moved.
     if (end.success || options_.source != 0) return;
-    if (solution_.empty()) return note("it was done, and success is not so");
-    lack_ = "all skills were done, and success is not so";
+    if (solution_.empty()) return note("it was done, but `success` is not true");
+    lack_ = "all skills were done, but `success` is not true";
   }
   std::optional<std::string> remark() const override {
     return lack_.empty() ? std::nullopt : std::optional(lack_);
@@ -91,6 +91,7 @@ class Expert final : public policy::Policy {
     if (!joint_actions_) return servo_.interval();
     return std::max(1, static_cast<int>(std::lround(rate_ / kDecisionRate)));
   }
+
   // What the tool shall do, in seven numbers.
   Result<policy::Action> step_tool(const policy::Observation& observation) {
     if (!started_ && observation.privileged != nullptr)
@@ -140,7 +141,7 @@ class Expert final : public policy::Policy {
     return action;
   }
 
-  // When the episode ends.
+  // Asked when the episode has ended.
   bool is_all_done() const {
     // The last one keeps still when it is done.
     const bool is_last = skill_ + 1 == solution_.size();

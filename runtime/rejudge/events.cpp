@@ -146,12 +146,12 @@ std::optional<int> step_of(const EpisodeEvents& events, std::string_view name) {
   return std::nullopt;
 }
 
-// The subgoals are of a task's source and target: another role's way is told by none.
+// The subgoals are those of a task's source and target: what happens to another role is not timed.
 void tell_times(EpisodeEvents& events, double hz) {
   const auto grasped = step_of(events, kGraspedSubgoal), placed = step_of(events, kPlacedSubgoal);
   const auto seconds = [&](int steps) { return static_cast<double>(steps) / hz; };
   if (!grasped) {
-    events.to_grasp.why_not = "the task has no source, and the times are of that alone";
+    events.to_grasp.why_not = "the task has no source, and no other role is timed";
   } else if (*grasped == 0) {
     events.to_grasp.why_not = "never grasped";
   } else {

@@ -48,10 +48,11 @@ Result<std::vector<Job>> match_rows(const plan::Plan& plan, const plan::Plan& re
 Failure nothing_judged(const std::string& suite, const std::string& tasks,
                        std::span<const std::string> left_out) {
   if (left_out.empty()) return {Fault::kUsage, "no stored episode matches `" + tasks + "`", ""};
-  return {Fault::kUsage,
-          "the judging plan has none of the stored tasks, such as `" + left_out.front() +
-              "`; metrics of a text without tasks and suites of its own are put behind the run's",
-          suite};
+  return {
+      Fault::kUsage,
+      "the judging plan has none of the stored tasks, such as `" + left_out.front() +
+          "`; a text that declares no task and no suite has its metrics put behind the run's own",
+      suite};
 }
 
 store::ResultRow judged_row(const plan::Plan& plan, const Job& job, const Rescored& score,

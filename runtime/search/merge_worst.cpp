@@ -95,8 +95,8 @@ Json joined_worst(std::span<const WorstShard> shards) {
   }
   if (const int invalid = whole(joined, "invalid"); invalid > 0)
     lines.push_back(
-        fmt::format("{} of {} trials are invalid and left out (`search show` of each shard "
-                    "says its first)",
+        fmt::format("{} of {} trials are invalid and left out (`search show` of a shard names "
+                    "its first)",
                     invalid, whole(joined, "trials")));
   for (const std::string& line : worst_lines(cases, own, whole(joined, "trials")))
     lines.push_back(line);

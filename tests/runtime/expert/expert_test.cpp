@@ -38,7 +38,7 @@ int play(test::FakeTable& table, policy::Policy& policy) {
 const std::vector<Vec2> kCells = {
     {-0.235, -0.075}, {-0.235, 0.075}, {-0.085, -0.075}, {-0.085, 0.075}};
 
-TEST_CASE("where all was done and success is not so, it says that, and of success nothing") {
+TEST_CASE("where all was done and success is not true it says so, and of a success nothing") {
   for (const bool success : {true, false}) {
     test::FakeTable table(test::carrot(kCells[0].x(), kCells[0].y(), 180),
                           test::plate(kCells[3].x(), kCells[3].y()));
@@ -47,7 +47,7 @@ TEST_CASE("where all was done and success is not so, it says that, and of succes
     policy->end({true, success, 60});
     const std::string remark = policy->remark().value_or("");
     CHECK(remark ==
-          (success ? "" : "skill `put carrot on plate`: it was done, and success is not so"));
+          (success ? "" : "skill `put carrot on plate`: it was done, but `success` is not true"));
   }
 }
 

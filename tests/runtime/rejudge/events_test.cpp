@@ -162,7 +162,7 @@ TEST_CASE("a time that a task cannot have says that it is of a source and a targ
   std::erase(judging.metrics.subgoals, "placed_it");
   CHECK(hand_over() == "the task has no target to place it on");
   std::erase(judging.metrics.subgoals, "grasped_it");
-  CHECK(hand_over() == "the task has no source, and the times are of that alone");
+  CHECK(hand_over() == "the task has no source, and no other role is timed");
 }
 
 TEST_CASE("nothing is told of an invalid episode, and why stands in every form") {
