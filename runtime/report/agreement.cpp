@@ -115,7 +115,7 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
         std::string& columns = partial[real.policy];
         columns += fmt::format("{}{}{} starts of `{}`", columns.empty() ? "" : ", ", of.starts,
                                is_part ? fmt::format(" of {}", of.planned) : "", column_of(real));
-        if (!is_part) columns += fmt::format(" where simulated rates are of {} and more", trials);
+        if (!is_part) columns += fmt::format(" (the table's simulated rates: {} or more)", trials);
       }
       PublishedFigure figure = real;
       figure.source = figure.protocol = kTheseRuns;
@@ -159,18 +159,22 @@ std::vector<std::string> add_runs(RateTable& table, const Benchmark& benchmark) 
 }
 
 std::vector<AgreementRow> agreements(const RateTable& table) {
+  using Key = std::array<std::string, 3>;  // source, protocol, column
   struct Sides {
+    const PublishedFigure* first = nullptr;  // of the column, in the order of the table
     std::vector<std::string> policies, without_real;
     std::vector<stats::MeasuredRate> real, simulated;
   };
-  std::vector<std::pair<std::array<std::string, 3>, const PublishedFigure*>>
-      order;                                            // the first of each
-  std::map<std::array<std::string, 3>, Sides> columns;  // by source, protocol and column
+  std::vector<Key> order;
+  std::map<Key, Sides> columns;
   for (const PublishedFigure& figure : table.figures) {
     if (!is_rate(figure) || figure.protocol == kReal) continue;
-    const std::array<std::string, 3> key = {figure.source, figure.protocol, column_of(figure)};
-    if (!columns.contains(key)) order.emplace_back(key, &figure);
+    const Key key = {figure.source, figure.protocol, column_of(figure)};
     Sides& sides = columns[key];
+    if (sides.first == nullptr) {
+      sides.first = &figure;
+      order.push_back(key);
+    }
     const PublishedFigure* real = real_of(table, figure);
     if (real == nullptr) {
       sides.without_real.push_back(figure.policy);
@@ -181,19 +185,21 @@ std::vector<AgreementRow> agreements(const RateTable& table) {
     sides.simulated.push_back(measured(figure));
   }
   std::vector<AgreementRow> rows;
-  for (const auto& [key, first] : order) {
+  for (const Key& key : order) {
     const Sides& sides = columns[key];
+    const PublishedFigure& first = *sides.first;
     if (sides.policies.size() < kFewest) continue;
     std::vector<std::string> without_simulated;
     for (const PublishedFigure& figure : table.figures) {
-      if (!is_rate(figure) || figure.protocol != kReal || column_of(figure) != key[2]) continue;
+      if (!is_rate(figure) || figure.protocol != kReal || column_of(figure) != column_of(first))
+        continue;
       const auto is_in = [&](const std::vector<std::string>& names) {
         return std::ranges::find(names, figure.policy) != names.end();
       };
       if (!is_in(sides.policies) && !is_in(without_simulated))
         without_simulated.push_back(figure.policy);
     }
-    rows.push_back({first->source, first->protocol, first->task, first->subtask, sides.policies,
+    rows.push_back({first.source, first.protocol, first.task, first.subtask, sides.policies,
                     sides.without_real, std::move(without_simulated),
                     stats::rank_agreement(sides.real, sides.simulated)});
   }

@@ -101,15 +101,12 @@ Result<Key> key_of(const Header& header, const std::vector<std::string>& cells,
   return key;
 }
 
-// What a source says once: task and subtask as the column that they name together.
-Key named(const Key& key) {
-  PublishedFigure of;
-  of.task = key[kTask];
-  of.subtask = key[kSubtask];
-  Key out = key;
-  out[kTask] = column_of(of);
-  out[kSubtask].clear();
-  return out;
+// A source gives one figure a column, however it divides the column's name into task and subtask.
+Key column_key(const Key& key) {
+  Key joined = key;
+  joined[kTask] = column_of(key[kTask], key[kSubtask]);
+  joined[kSubtask].clear();
+  return joined;
 }
 
 PublishedFigure figure_of(const Key& key, std::size_t line) {
@@ -151,6 +148,10 @@ Status put_trials(const std::string& written, const std::string& where, Publishe
 
 }  // namespace
 
+std::string column_of(const std::string& task, const std::string& subtask) {
+  return subtask.empty() || subtask == "average" ? task : task + "_" + subtask;
+}
+
 std::string name_of(const PublishedFigure& figure) {
   return fmt::format("{}, {}, {}", figure.policy, figure.protocol, column_of(figure));
 }
@@ -188,7 +189,7 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
     PROBE_TRY(put_value(*value, written, where, figure));
     if (table.figures.size() >= kMostFigures)
       return Failure{Fault::kUsage, fmt::format("more than {} figures", kMostFigures), where};
-    if (const auto [first, is_new] = lines.try_emplace(named(key), number); !is_new)
+    if (const auto [first, is_new] = lines.try_emplace(column_key(key), number); !is_new)
       return Failure{Fault::kUsage,
                      fmt::format("{}: {} of this source is on line {} already", name_of(figure),
                                  figure.metric, first->second),

@@ -37,12 +37,11 @@ Result<RateTable> parse_rate_table(std::string_view csv, const std::string& file
 inline constexpr std::string_view kReal = "real";
 inline bool is_rate(const PublishedFigure& figure) { return figure.metric == "success_rate"; }
 
-// What the column of a figure, or of a row of agreements, is called: task and subtask joined by
-// `_`, the task alone where the subtask is `average` or none.
-std::string column_of(const auto& of) {
-  if (of.subtask.empty() || of.subtask == "average") return of.task;
-  return of.task + "_" + of.subtask;
-}
+// What a column is called: task and subtask joined by `_`, the task alone where the subtask is
+// `average` or none.
+std::string column_of(const std::string& task, const std::string& subtask);
+// Of a figure, or of a row of agreements.
+std::string column_of(const auto& of) { return column_of(of.task, of.subtask); }
 // "RT-1-X, visual_matching, drawer_open"
 std::string name_of(const PublishedFigure& figure);
 

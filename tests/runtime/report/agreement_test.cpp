@@ -210,8 +210,8 @@ TEST_CASE(
   REQUIRE_MESSAGE(fewer.ok(), to_text(fewer.failure()));
   table = parsed(simulated);
   CHECK(add_runs(table, *fewer)[0] == "`b` has " + std::to_string(planned) +
-                                          " starts of `core` where simulated rates are of 1000 and "
-                                          "more: its rates are of these");
+                                          " starts of `core` (the table's simulated rates: 1000 or "
+                                          "more): its rates are of these");
   table = parsed(real);
   for (const std::string& line : add_runs(table, *fewer))
     CHECK_MESSAGE(line.find("its rates are of these") == line.npos, line);
