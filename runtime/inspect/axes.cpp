@@ -231,9 +231,6 @@ bool stands_alike(const std::array<double, 3>& a, double surface_a, const std::a
 bool acts_alike(const plan::Plan& plan, const plan::FixtureRecord& a,
                 const plan::FixtureRecord& b) {
   const plan::Tables& tables = plan.tables();
-  const auto same = [](const auto& here, const auto& there, const auto& is_same) {
-    return std::ranges::equal(here, there, is_same);
-  };
   const auto same_joint = [&](const plan::FixtureJointRecord& p,
                               const plan::FixtureJointRecord& q) {
     return plan.text(p.joint) == plan.text(q.joint) && p.motion == q.motion && p.lower == q.lower &&
@@ -248,10 +245,10 @@ bool acts_alike(const plan::Plan& plan, const plan::FixtureRecord& a,
          std::ranges::equal(plan::slice_of(tables.list, a.meshes),
                             plan::slice_of(tables.list, b.meshes)) &&
          std::ranges::equal(plan.armatures(a), plan.armatures(b)) &&
-         same(plan::slice_of(tables.fixture_joints, a.joints),
-              plan::slice_of(tables.fixture_joints, b.joints), same_joint) &&
-         same(plan::slice_of(tables.shown, a.shown), plan::slice_of(tables.shown, b.shown),
-              same_shown);
+         std::ranges::equal(plan::slice_of(tables.fixture_joints, a.joints),
+                            plan::slice_of(tables.fixture_joints, b.joints), same_joint) &&
+         std::ranges::equal(plan::slice_of(tables.shown, a.shown),
+                            plan::slice_of(tables.shown, b.shown), same_shown);
 }
 
 // Whether the rest of two scenes is alike whose surfaces are of different heights.
