@@ -24,6 +24,7 @@
 #include "runtime/run/replay.h"
 #include "runtime/store/callers_policy.h"
 #include "runtime/store/proof.h"
+#include "runtime/store/run_plan.h"
 #include "runtime/store/run_record.h"
 #include "runtime/store/store.h"
 
@@ -253,7 +254,11 @@ int32_t vlaprobe_replay(const char* folder, const char* task, int32_t episode, i
     wanted.png_step = given.png_step;
     wanted.camera = text_of(given.camera);
     wanted.assets = api::folders_of(given.assets);
-    for (const std::string& out : {wanted.video, wanted.png}) PROBE_TRY(assets::check_output(out));
+    const bool writes = !wanted.video.empty() || !wanted.png.empty();
+    const auto inputs =
+        writes ? store::files_of_run(folder, wanted.assets) : std::vector<std::string>();
+    for (const std::string& out : {wanted.video, wanted.png})
+      PROBE_TRY(assets::check_output(out, inputs));
     const std::optional<int> asked = seed < 0 ? std::nullopt : std::optional<int>(seed);
     PROBE_ASSIGN(const run::ReplayReport report, run::replay(folder, task, episode, asked, wanted));
     return give({{"steps", report.steps},

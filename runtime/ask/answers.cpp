@@ -32,8 +32,6 @@ Result<Database> open_to_read(const std::string& dir) {
 
 }  // namespace
 
-bool holds_answers(const std::string& dir) { return probe::holds_answers(dir); }
-
 Result<std::optional<AskRecord>> find_ask_record(const std::string& dir) {
   if (!holds_answers(dir)) return std::optional<AskRecord>();
   PROBE_ASSIGN(Database database, Database::open(answers_path(dir), Access::kRead, kAnswersAdvice));

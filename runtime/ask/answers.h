@@ -13,6 +13,7 @@
 
 #include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/ask_record.h"
+#include "runtime/base/folder_kind.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"
 
@@ -73,7 +74,7 @@ class Answers {
 };
 
 // Whether `dir` is a folder of answers, as its answers.sqlite says; whole or not.
-bool holds_answers(const std::string& dir);
+using probe::holds_answers;
 // Nothing when none was begun in `dir`.
 Result<std::optional<AskRecord>> find_ask_record(const std::string& dir);
 Result<AskRecord> read_ask_record(const std::string& dir);

@@ -21,26 +21,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Kinds of files that people make and no verb writes.
-bool is_only_read(const fs::path& path) {
-  constexpr std::string_view kKinds[] = {".urdf", ".profile"};
+std::string kind_of(const fs::path& path) {
   std::string kind = path.extension().string();
   for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return kind;
+}
+
+// Kinds of files that people make and no verb writes.
+bool is_only_read(const std::string& kind) {
+  constexpr std::string_view kKinds[] = {".urdf", ".profile"};
   return std::ranges::find(kKinds, kind) != std::end(kKinds) ||
          std::ranges::find(kMeshExtensions, kind) != kMeshExtensions.end();
 }
 
-bool is_plan(const std::string& path) {
-  const auto head = read_file(path, {.most = plan::kMagic.size(), .only_begin = true});
-  return head && std::ranges::equal(*head, plan::kMagic, [](char a, std::uint8_t b) {
-           return static_cast<std::uint8_t>(a) == b;
-         });
+// Such as textures of a text that is built.
+bool is_picture(const std::string& kind) {
+  return std::ranges::find(kPhotoExtensions, kind) != kPhotoExtensions.end();
 }
 
-// Of a folder that has this database.
-bool is_part_of_results(std::string_view name, const char* database) {
-  return name.starts_with(database) || name == "suite.plan" || name == "lock" || name == "traces" ||
-         name == "videos";
+// Kinds of files that only their own kind takes the place of, by how they begin.
+struct KindByHead {
+  Writes kind;
+  std::string_view head;
+  const char* word;
+};
+const KindByHead kByHead[] = {
+    {Writes::kPlan,
+     {reinterpret_cast<const char*>(plan::kMagic.data()), plan::kMagic.size()},
+     "plan"},
+    {Writes::kTranscript, "vlaprobe transcript ", "transcript"},  // runtime/servers/transcript.h
+};
+
+bool begins_with(const std::string& path, std::string_view head) {
+  const auto there = read_file(path, {.most = head.size(), .only_begin = true});
+  return there && *there == head;
 }
 
 }  // namespace
@@ -59,7 +73,11 @@ Status check_output(const std::string& out, std::span<const std::string> inputs,
   if (path.extension() == ".probe" && is_there(path.string())) {
     return refuse("is Probe text and is not written over; give -o another name");
   }
-  if (is_only_read(path) && is_there(path.string())) {
+  const std::string kind = kind_of(path);
+  if (writes == Writes::kPlan && is_picture(kind) && is_there(path.string())) {
+    return refuse("is a picture and is not written over by a plan; give -o another name");
+  }
+  if (is_only_read(kind) && is_there(path.string())) {
     return refuse("is no file that a verb writes and is not written over; give -o another name");
   }
   for (fs::path dir = path.parent_path(); dir.has_relative_path(); dir = dir.parent_path()) {
@@ -73,18 +91,18 @@ Status check_output(const std::string& out, std::span<const std::string> inputs,
                         dir.string()));
       }
     }
-    for (const char* database : {probe::kRunDatabase, probe::kAnswersDatabase}) {
-      if (!is_there(probe::path_in(dir.string(), database)) ||
-          !is_part_of_results(below.substr(0, below.find('/')), database))
+    for (const FolderRow& row : folder_table()) {
+      if (!is_own_name(row, below.substr(0, below.find('/'))) || !holds(dir.string(), row.kind))
         continue;
-      const bool is_run = database == probe::kRunDatabase;
       return refuse(
           fmt::format("belongs to the {} in `{}` and is not written over; give -o another name",
-                      is_run ? "run" : "answers", dir.string()));
+                      row.word, dir.string()));
     }
   }
-  if (writes != Writes::kPlan && is_plan(path.string())) {
-    return refuse("is a plan and is not written over by anything else; give -o another name");
+  for (const KindByHead& known : kByHead) {
+    if (writes == known.kind || !begins_with(path.string(), known.head)) continue;
+    return refuse(fmt::format(
+        "is a {} and is not written over by anything else; give -o another name", known.word));
   }
   return {};
 }

@@ -5,7 +5,6 @@
 
 #include <span>
 
-#include "runtime/assets/output_file.h"
 #include "runtime/base/asset_root.h"
 #include "runtime/base/file.h"
 #include "runtime/base/say.h"
@@ -17,13 +16,11 @@ namespace {
 
 int draw_verb(const DrawArguments& arguments, PhraseDrawing draw_phrases) {
   if (arguments.phrases && draw_phrases == nullptr) return kHandOver;
-  const std::string inputs[] = {arguments.file};
-  if (auto spared = assets::check_output(arguments.out, inputs); !spared)
-    return report(spared.failure());
   AssetOptions assets = arguments.assets;
   assets.tasks = arguments.task;
   LoadedPlan loaded = load_plan(arguments.file, assets);
   if (!loaded.plan) return loaded.exit;
+  if (auto spared = check_output(arguments.out, loaded); !spared) return report(spared.failure());
   if (arguments.phrases) return draw_phrases(loaded, arguments);
   const auto task = find_task(*loaded.plan, arguments.task, loaded.exit);
   if (!task) return loaded.exit;

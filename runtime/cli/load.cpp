@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include "compiler/diag/diagnostic.h"
+#include "runtime/assets/output_file.h"
+#include "runtime/base/asset_root.h"
 #include "runtime/cli/compile.h"
 #include "runtime/compile/files.h"
 #include "runtime/inspect/task_json.h"
+#include "runtime/plan/asset_files.h"
 
 namespace probe::cli {
 namespace {
@@ -47,12 +50,14 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
     }
     plan = plan::Plan::from_bytes(std::move(text.plan));
     loaded.is_text = true;
+    loaded.files = std::move(text.files);
     if (plan) loaded.assets = compile::root_for(*plan, text.asset_root);
     loaded.unused_phrases = std::move(text.unused_phrases);
     loaded.referring = std::move(text.referring);
     loaded.only_used_suites = plan && !plan->suites().empty() && text.own_suites.empty();
   } else {
     plan = plan::Plan::open(path);
+    loaded.files = {path};
     if (plan) loaded.assets = compile::root_for_file(*plan, path, root_of(assets));
   }
   if (!plan) {
@@ -61,6 +66,15 @@ LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
   }
   loaded.plan = std::move(plan).value();
   return loaded;
+}
+
+Status check_output(const std::string& out, const LoadedPlan& loaded) {
+  std::vector<std::string> inputs = loaded.files;
+  if (const auto root = find_asset_root(loaded.assets); root && loaded.plan) {
+    for (std::string& file : plan::asset_files(*loaded.plan, *root))
+      inputs.push_back(std::move(file));
+  }
+  return assets::check_output(out, inputs);
 }
 
 std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit) {

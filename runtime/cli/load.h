@@ -19,10 +19,15 @@ struct LoadedPlan {
   bool is_text = false;                     // compiled just now
   std::vector<ReferringWords> referring;    // of a text
   std::vector<std::string> unused_phrases;  // of a text: "object.phrase" that no task refers by
+  std::vector<std::string> files;           // the plan, or every text and table that was read
   bool only_used_suites = false;  // a text that declares no suite, while files that it uses do
 };
 LoadedPlan load_plan(const std::string& path, const AssetOptions& assets,
                      const std::string& suite = {});
+
+// Whether `out` may be written with what is made of it: assets::check_output with all that was
+// read, models and their pictures too. Fails as that.
+Status check_output(const std::string& out, const LoadedPlan& loaded);
 
 // Indices by name; on an unknown one prints it with the nearest spelling and sets `exit`.
 std::optional<std::uint32_t> find_task(const plan::Plan& plan, const std::string& name, int& exit);

@@ -79,14 +79,23 @@ std::vector<sema::TaskId> choose(const sema::Model& model, const std::string& su
   return all;
 }
 
-// Every instruction of a text or plan.
+// Texts and tables that were read.
+void add_files(const Analysed& analysed, std::vector<std::string>& inputs) {
+  const SourceSet& sources = analysed.text->compilation.sources;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    inputs.push_back(sources.file(FileId{static_cast<std::uint32_t>(i)}).name());
+}
+
+// Every instruction of a text or plan. `inputs` grows by the files that were read.
 std::optional<rephrase::Evaluation> evaluation(const std::string& file, const AssetOptions& assets,
-                                               int& exit) {
+                                               std::vector<std::string>& inputs, int& exit) {
   rephrase::Evaluation all{file, {}};
+  inputs.push_back(file);
   if (file.ends_with(".probe")) {
     const Analysed analysed = analyse(file, assets);
     exit = analysed.exit;
     if (!analysed.text) return std::nullopt;
+    add_files(analysed, inputs);
     for (const sema::Task& task : analysed.text->model.tasks) {
       if (task.abstract || !task.complete) continue;
       all.instructions.push_back({task.prompt, task.name});
@@ -210,13 +219,11 @@ int rephrase_verb(const RephraseArguments& arguments) {
     return report({Fault::kUsage, "expected .probe text: a plan has no templates and phrases",
                    arguments.file});
   }
-  std::vector<std::string> inputs = arguments.not_in;
-  inputs.push_back(arguments.file);
-  if (const auto fits = assets::check_output(arguments.out, inputs); !fits)
-    return report(fits.failure());
   const Analysed analysed = analyse(arguments.file, arguments.assets, arguments.suite);
   if (!analysed.text) return analysed.exit;
   options->asset_root = analysed.text->compilation.asset_root;
+  std::vector<std::string> inputs = {arguments.file};
+  add_files(analysed, inputs);
   const sema::Model& model = analysed.text->model;
   const std::vector<sema::TaskId> tasks = choose(model, arguments.suite, arguments.assets.tasks);
   if (tasks.empty()) {
@@ -229,10 +236,12 @@ int rephrase_verb(const RephraseArguments& arguments) {
   std::vector<rephrase::Evaluation> not_in;
   for (const std::string& file : arguments.not_in) {
     int exit = kFine;
-    auto all = evaluation(file, arguments.assets, exit);
+    auto all = evaluation(file, arguments.assets, inputs, exit);
     if (!all) return exit;
     not_in.push_back(*std::move(all));
   }
+  if (const auto fits = assets::check_output(arguments.out, inputs); !fits)
+    return report(fits.failure());
   const rephrase::Rephrased all = rephrase::rephrase(model, tasks, not_in, *options);
   if (says_leaks(model, all)) return kUser;
   if (!arguments.out.empty()) {

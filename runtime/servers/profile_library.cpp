@@ -8,7 +8,7 @@
 namespace probe::servers {
 
 Result<Profile> find_profile(std::string_view name) {
-  if (name.find('/') != std::string_view::npos || name.ends_with(".profile")) {
+  if (names_file(name)) {
     const std::filesystem::path path(name);
     auto text = read_file(path.string());
     if (!text) return Failure{Fault::kUsage, text.failure().message, path.string()};

@@ -18,7 +18,12 @@ struct ProfileText {
 // Ascending by name.
 std::span<const ProfileText> ready_profiles();
 
-// `name` of a ready profile, or the path of a file (it has a `/` or ends in `.profile`). Fails
+// Whether `name` is the path of a file: it has a `/` or ends in `.profile`.
+inline bool names_file(std::string_view name) {
+  return name.find('/') != std::string_view::npos || name.ends_with(".profile");
+}
+
+// `name` of a ready profile, or the path of a file. Fails
 // (kUsage) with the names there are and the nearest, and as parse_profile does.
 Result<Profile> find_profile(std::string_view name);
 

@@ -109,7 +109,12 @@ Result<ServerChoice> chosen(Protocol protocol, wire::Endpoint server,
                  std::string(to_word(profile.protocol)) + ", not " + name + ": " +
                  address_for(profile, scheme));
   }
-  if (chosen != options.end()) options.erase(chosen);
+  std::vector<std::string> files;
+  if (!server.tls.authorities.empty()) files.push_back(server.tls.authorities);
+  if (chosen != options.end()) {
+    if (names_file(chosen->second)) files.push_back(chosen->second);
+    options.erase(chosen);
+  }
   std::vector<std::string> own(row.options.begin(), row.options.end());
   for (const std::string& option : own) {
     if (auto node = options.extract(option); !node.empty()) server.options.insert(std::move(node));
@@ -129,7 +134,7 @@ Result<ServerChoice> chosen(Protocol protocol, wire::Endpoint server,
   }
   if (auto whole = check_profile(profile); !whole) return usage(whole.failure().message);
   if (limits.most > 1) PROBE_TRY(check_fit_for_batches(profile, row));
-  return ServerChoice{std::move(profile), std::move(server), limits, seed};
+  return ServerChoice{std::move(profile), std::move(server), limits, seed, std::move(files)};
 }
 
 // The protocols that go over what a URL begins with: "openpi, intact".

@@ -31,6 +31,7 @@ struct ServerChoice {
   BatchLimits batch{.most = 1};
   // The server has one seed's episodes, as our own of a policy that draws: others are not its.
   std::optional<int> only_seed = {};
+  std::vector<std::string> files = {};  // that it names: the profile's, and the authorities'
 };
 
 // `argument` is what stands after "openpi:". Options are `profile` (default: the protocol's own),

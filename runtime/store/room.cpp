@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "runtime/base/folder_kind.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/folder_lock.h"
 #include "runtime/store/proof.h"
@@ -17,10 +18,6 @@ namespace probe::store {
 namespace {
 
 namespace fs = std::filesystem;
-
-// What `run` makes in a folder, and nothing else.
-constexpr std::string_view kOwn[] = {"traces", "videos", "results.sqlite", "suite.plan", "lock",
-                                     "chosen", "results.sqlite-journal"};
 
 // Calls `visit` with every regular file below a folder, no link followed.
 template <typename Visit>
@@ -92,7 +89,8 @@ std::string why_needed(const fs::path& shard,
   const auto names = list_folder(shard.string());
   if (!names) return "cannot be listed";
   for (const std::string& name : *names) {
-    if (std::ranges::find(kOwn, name) == std::end(kOwn)) return "has `" + name + "`, which no run makes";
+    if (!is_own_name(folder_row(FolderKind::kRun), name))
+      return "has `" + name + "`, which no run makes";
   }
   if (FolderLock::is_taken(shard.string())) return "is being written";
   std::int64_t missing = 0, videos = 0;

@@ -1,5 +1,6 @@
 #include "runtime/store/run_plan.h"
 
+#include "runtime/plan/asset_files.h"
 #include "runtime/store/store.h"
 
 namespace probe::store {
@@ -38,6 +39,13 @@ Result<AssetRoot> find_run_assets(const std::string& dir, const AssetRoot& chose
     for (const std::string& folder : own->folders()) folders.push_back(folder);
   }
   return AssetRoot::chosen(folders);
+}
+
+std::vector<std::string> files_of_run(const std::string& dir, const AssetRoot& chosen) {
+  const auto plan = open_run_plan(dir);
+  const auto root = find_run_assets(dir, chosen);
+  if (!plan || !root) return {};
+  return plan::asset_files(*plan, *root);
 }
 
 }  // namespace probe::store

@@ -42,7 +42,9 @@ int record_verb(const PolicyArguments& arguments) {
   const auto choice = run::server_choice(arguments.policy, arguments.insecure);
   if (!choice) return report(choice.failure());
   if (arguments.insecure) warn_of_insecure(arguments.policy);
-  if (auto spared = assets::check_output(arguments.transcript); !spared)
+  if (auto spared =
+          assets::check_output(arguments.transcript, choice->files, assets::Writes::kTranscript);
+      !spared)
     return report(spared.failure());
   const auto recorded = servers::record(*choice);
   if (!recorded) return report(recorded.failure());

@@ -7,6 +7,7 @@
 
 #include "runtime/assets/output_file.h"
 #include "runtime/cli/full/verbs.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::cli {
 namespace {
@@ -22,8 +23,11 @@ struct ReplayArguments {
 int replay_verb(const ReplayArguments& arguments) {
   run::ReplayOptions options = arguments.options;
   options.assets = root_of(arguments.assets);
+  const bool writes = !options.video.empty() || !options.png.empty();
+  const auto inputs =
+      writes ? store::files_of_run(arguments.dir, options.assets) : std::vector<std::string>();
   for (const std::string& out : {options.video, options.png}) {
-    if (auto spared = assets::check_output(out); !spared) return report(spared.failure());
+    if (auto spared = assets::check_output(out, inputs); !spared) return report(spared.failure());
   }
   auto report_or =
       run::replay(arguments.dir, arguments.task, arguments.episode, arguments.seed, options);

@@ -9,6 +9,7 @@
 #include "runtime/cli/load.h"
 #include "runtime/run/replay.h"
 #include "runtime/show/preview.h"
+#include "runtime/store/run_plan.h"
 
 namespace probe::cli {
 namespace {
@@ -26,9 +27,7 @@ void add_camera_option(Verb verb, SheetArguments& arguments) {
 }
 
 // Before anything is drawn; false when `exit` says why not.
-bool may_write(const SheetArguments& arguments, int& exit) {
-  const std::string inputs[] = {arguments.input};
-  const Status spared = assets::check_output(arguments.out, inputs);
+bool may_write(const Status& spared, int& exit) {
   if (!spared) exit = report(spared.failure());
   return spared.ok();
 }
@@ -54,8 +53,10 @@ void add_sheet(Verb app, int& exit) {
   add_asset_option(verb, arguments->assets);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
-    if (!may_write(*arguments, exit)) return;
     arguments->options.assets = root_of(arguments->assets);
+    auto inputs = store::files_of_run(arguments->input, arguments->options.assets);
+    inputs.push_back(arguments->input);
+    if (!may_write(assets::check_output(arguments->out, inputs), exit)) return;
     exit = written(show::write_contact_sheet(arguments->input, arguments->out, arguments->options),
                    arguments->out);
   });
@@ -76,11 +77,10 @@ void add_preview(Verb app, int& exit) {
   add_asset_option(verb, arguments->assets);
   verb.refuse_empty_values();
   verb.callback([arguments, &exit] {
-    if (!may_write(*arguments, exit)) return;
     arguments->assets.tasks = arguments->task;
     LoadedPlan loaded = load_plan(arguments->input, arguments->assets);
     exit = loaded.exit;
-    if (!loaded.plan) return;
+    if (!loaded.plan || !may_write(check_output(arguments->out, loaded), exit)) return;
     const auto task = find_task(*loaded.plan, arguments->task, exit);
     if (!task) return;
     arguments->options.assets = loaded.assets;
