@@ -11,6 +11,7 @@
 #include "runtime/ask/vouch.h"
 #include "runtime/base/file.h"
 #include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
 #include "runtime/store/folder_lock.h"
@@ -55,7 +56,7 @@ class FolderAnswers final : public Answers {
       PROBE_TRY(put_plan_back(plan_bytes));
     } else {
       // The plan goes first: a folder with a record always has its plan.
-      PROBE_TRY(write_file(store::plan_path(dir_), plan_bytes));
+      PROBE_TRY(write_plan(plan_bytes));
       PROBE_TRY(sync_folder(dir_));
       Statement write(database_, "insert into ask values ('record', ?)", Access::kWrite);
       write.bind(to_text(record)).next();
@@ -191,10 +192,15 @@ class FolderAnswers final : public Answers {
     return insert.done();
   }
 
+  Status write_plan(std::span<const std::byte> plan_bytes) const {
+    PROBE_ASSIGN(const std::string file, file_inside(dir_, "suite.plan"));
+    return write_file(file, plan_bytes);
+  }
+
   // A plan that was lost, damaged or exchanged since.
   Status put_plan_back(std::span<const std::byte> plan_bytes) const {
     if (plan_bytes.empty() || open_asked_plan(dir_).ok()) return {};
-    PROBE_TRY(write_file(store::plan_path(dir_), plan_bytes));
+    PROBE_TRY(write_plan(plan_bytes));
     return sync_folder(dir_);
   }
 
@@ -236,8 +242,7 @@ bool Answers::Stored::has(const AnswerKey& key) const {
 Result<std::unique_ptr<Answers>> Answers::open(const std::string& dir, const AskRecord& record,
                                                std::span<const std::byte> plan_bytes) {
   if (dir.empty()) return Failure{Fault::kStore, "no folder to write into", "-o"};
-  if (probe::holds_run(dir))
-    return Failure{Fault::kStore, "holds a run; take another folder for answers", dir};
+  PROBE_TRY(check_holds_no_other(dir, FolderKind::kAnswers));
   if (auto made = make_lasting_folders(dir); !made)
     return Failure{Fault::kStore, made.failure().message, dir};
   PROBE_ASSIGN(store::FolderLock lock, store::FolderLock::take(dir));

@@ -29,6 +29,7 @@ class AskWork final : public cluster::ArrayWork {
           const Queries& queries)
       : plan_(plan), options_(options), own_name_(std::move(own_name)), queries_(queries) {}
 
+  FolderKind folder_kind() const override { return FolderKind::kAnswers; }
   std::string verb() const override { return "ask"; }
   std::string actor_flag() const override { return "--model"; }
   std::string actor() const override { return options_.model; }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/folder_kind.h"
 #include "runtime/base/result.h"
 #include "runtime/store/merge.h"
 
@@ -15,6 +16,7 @@ namespace probe::cluster {
 class ArrayWork {
  public:
   virtual ~ArrayWork() = default;
+  virtual FolderKind folder_kind() const = 0;  // of the joined folder and its shards
   virtual std::string verb() const = 0;        // of vlaprobe: "run"
   virtual std::string actor_flag() const = 0;  // says who acts: "--policy"
   virtual std::string actor() const = 0;       // with {port} for a task's own server

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "runtime/base/file.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/percent.h"
 #include "runtime/cluster/measured_time.h"
@@ -234,6 +235,7 @@ class RunWork final : public ArrayWork {
   RunWork(const plan::Plan& plan, const run::RunOptions& options, std::set<EpisodeKey> chosen)
       : plan_(plan), options_(options), chosen_(std::move(chosen)) {}
 
+  FolderKind folder_kind() const override { return FolderKind::kRun; }
   std::string verb() const override { return "run"; }
   std::string actor_flag() const override { return "--policy"; }
   std::string actor() const override { return options_.policy; }
@@ -351,7 +353,11 @@ Result<SlurmReport> work_on_slurm(const plan::Plan& plan, const ArrayWork& work,
   script.run_arguments = work.words();
   PROBE_ASSIGN(const std::string text, to_text(script));
   PROBE_ASSIGN(const std::string merge, merge_text(script, mixed_builds));
+  PROBE_TRY(check_holds_no_other(out, work.folder_kind()));
   PROBE_TRY(work.check_same(out));
+  // The jobs write there, too.
+  for (const char* const own : {"slurm", "slurm/log", "shards"})
+    PROBE_TRY(check_all_inside(out, own));
   std::error_code error;
   fs::create_directories(folder / "log", error);
   if (error) return Failure{Fault::kIo, "cannot be made: " + error.message(), folder.string()};

@@ -9,6 +9,7 @@
 #include "runtime/servers/identity.h"
 #include "runtime/show/episode_video.h"
 #include "runtime/store/not_attempted.h"
+#include "runtime/store/video_place.h"
 
 namespace probe::run {
 namespace {
@@ -78,9 +79,9 @@ Result<Played> EpisodeWorker::write(const EpisodeJob& job, const store::TraceHea
   PROBE_ASSIGN(auto trace, store::TraceWriter::create(path, header));
   std::optional<show::EpisodeVideo> video;
   if (shared_.options.video != VideoChoice::kNone) {
-    const std::string file = store::video_path(shared_.options.out, store::key_of(header));
-    PROBE_TRY(make_folders(fs::path(file).parent_path().string()));
-    video.emplace(header, file);
+    PROBE_ASSIGN(std::string file,
+                 store::place_for_video(shared_.options.out, store::key_of(header)));
+    video.emplace(header, std::move(file));
   }
   PROBE_ASSIGN(Played played,
                run_episode(*stage_, shared_.plan, job, shared_.options.name, *policy_, *trace,

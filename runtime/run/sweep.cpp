@@ -7,6 +7,8 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/json.h"
 #include "runtime/base/percent.h"
 #include "runtime/plan/plan.h"
@@ -191,8 +193,9 @@ Status write_choice(const plan::Plan& plan, const SweepOptions& options,
   }
   json["alike"] = summary.alike;
   const std::string text = json.dump(2) + "\n";
-  return write_file((fs::path(options.run.out) / "sweep.json").string(),
-                    std::as_bytes(std::span(text)));
+  PROBE_ASSIGN(const std::string file,
+               file_inside(options.run.out, folder_row(FolderKind::kSweep).mark));
+  return write_file(file, std::as_bytes(std::span(text)));
 }
 
 }  // namespace
@@ -219,6 +222,9 @@ Status check_sweep(const SweepOptions& options) {
 
 Result<SweepSummary> sweep(const plan::Plan& plan, const SweepOptions& options) {
   PROBE_TRY(check_sweep(options));
+  PROBE_TRY(check_holds_no_other(options.run.out, FolderKind::kSweep));
+  for (const std::string& checkpoint : options.checkpoints)
+    PROBE_TRY(check_inside(options.run.out, checkpoint_folder(checkpoint)));
   const auto tell = [&](const std::string& text) {
     if (options.tell) options.tell(text);
   };

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/search/hunt.h"
 #include "runtime/search/merge_worst.h"
@@ -168,6 +170,7 @@ Result<store::MergeSummary> merge_worst(const store::MergeOptions& options) {
 }  // namespace
 
 Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
+  PROBE_TRY(check_search_folder(options.out));
   PROBE_ASSIGN(const SearchSummary first, read_search(options.dirs.front()));
   const Json& asked = first.findings.at("asked");
   for (const std::string& dir : options.dirs) {
@@ -185,8 +188,8 @@ Result<store::MergeSummary> merge_searches(const store::MergeOptions& options) {
   PROBE_ASSIGN(store::MergeSummary all,
                merge_rounds(rounds, first.findings.value("file", ""), options));
   if (!is_search(options.out)) {
-    PROBE_TRY(
-        copy_to_disk(in(options.dirs.front(), "search.json"), in(options.out, "search.json")));
+    PROBE_ASSIGN(const std::string file, file_inside(options.out, kSearchFile));
+    PROBE_TRY(copy_to_disk(in(options.dirs.front(), kSearchFile), file));
   }
   all.notes.push_back("the same `search` command with -o " + options.out +
                       " tells what was found, and runs what is missing");

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "runtime/base/inside.h"
 #include "runtime/search/hunt.h"
 
 namespace probe::search {
@@ -127,7 +128,8 @@ Status keep_found(const Json& findings, const std::string& folder) {
                     one.value("sentence", "")});
   }
   if (kept.empty()) return {};
-  return write_found(*base, kept, (std::filesystem::path(folder) / "found.probe").string());
+  PROBE_ASSIGN(const std::string file, file_inside(folder, "found.probe"));
+  return write_found(*base, kept, file);
 }
 
 }  // namespace probe::search

@@ -6,6 +6,8 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/search/hunt.h"
 
@@ -20,9 +22,7 @@ constexpr int kVersion = 1;
 constexpr double kMostInvalid = 0.1;
 constexpr std::string_view kMethods[] = {"boundary", "worst", "minimal", "axes"};
 
-std::string file_of(const std::string& folder) {
-  return (fs::path(folder) / "search.json").string();
-}
+std::string file_of(const std::string& folder) { return path_in(folder, kSearchFile); }
 
 // What a folder is begun with; of boundaries and minimal sets the budget may grow later.
 Json asked_of(const SearchOptions& options, const BaseTask& base, const std::string& content,
@@ -164,6 +164,7 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
   }
   const Json asked = asked_of(options, *base, actor.traits.content, whole.values);
   PROBE_TRY(check_folder(options.run.out, asked));
+  PROBE_TRY(check_search_folder(options.run.out));
   PROBE_TRY(make_lasting_folders(options.run.out));
   SearchSummary summary;
   summary.findings = {{"format", kFormat},
@@ -215,7 +216,7 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
                      options.text.file};
   }
   if (!hunt.kept.empty()) {
-    const std::string file = (fs::path(options.run.out) / "found.probe").string();
+    PROBE_ASSIGN(const std::string file, file_inside(options.run.out, "found.probe"));
     PROBE_TRY(write_found(*base, hunt.kept, file));
     summary.notes.push_back("what was found, as variants to keep: " + file);
   }
@@ -228,7 +229,17 @@ Result<SearchSummary> search(const SearchOptions& options, std::string& said) {
 
 Status write_search(const std::string& folder, const Json& findings) {
   const std::string text = findings.dump(1) + "\n";
-  return write_file(file_of(folder), std::as_bytes(std::span(text.data(), text.size())));
+  PROBE_ASSIGN(const std::string file, file_inside(folder, kSearchFile));
+  return write_file(file, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+Status check_search_folder(const std::string& folder) {
+  PROBE_TRY(check_holds_no_other(folder, FolderKind::kSearch));
+  PROBE_TRY(check_all_inside(folder, "rounds"));
+  const auto rounds = list_folder((fs::path(folder) / "rounds").string());
+  for (const std::string& round : rounds ? *rounds : std::vector<std::string>{})
+    PROBE_TRY(check_all_inside(folder, "rounds/" + round));
+  return {};
 }
 
 bool is_search(const std::string& folder) { return is_file(file_of(folder)); }

@@ -60,6 +60,10 @@ inline constexpr std::string_view kShardKey = "shard";
 
 // Whether the folder is one of a search.
 bool is_search(const std::string& folder);
+
+// Before rounds are written into it: it holds no run and no answers (kStore), and no link is where
+// rounds write (kIo), so that nothing lands outside of it.
+Status check_search_folder(const std::string& folder);
 // What a folder's search has found so far. Fails (kStore) where there is none.
 Result<SearchSummary> read_search(const std::string& folder);
 // DIR/search.json. Fails (kIo).

@@ -4,21 +4,23 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/inside.h"
 
 namespace probe::store {
 namespace {
 
-std::string chosen_path(const std::string& dir) { return dir + "/chosen"; }
+constexpr const char* kChosen = "chosen";
 
 }  // namespace
 
 void write_chosen(const std::string& dir, std::int64_t episodes) {
   const std::string text = std::to_string(episodes) + "\n";
-  (void)write_file(chosen_path(dir), std::as_bytes(std::span(text)));
+  if (const auto file = file_inside(dir, kChosen))
+    (void)write_file(*file, std::as_bytes(std::span(text)));
 }
 
 std::optional<std::int64_t> read_chosen(const std::string& dir) {
-  const auto text = read_file(chosen_path(dir), {.most = 64});
+  const auto text = read_file(dir + "/" + kChosen, {.most = 64});
   std::int64_t number = 0;
   if (!text) return std::nullopt;
   const auto read = std::from_chars(text->data(), text->data() + text->size(), number);

@@ -58,6 +58,11 @@ Result<Database> Database::open(const std::string& path, Access access, std::str
   if (is_there(path) && !is_file(path)) {
     return Failure{Fault::kStore, "is no file but a folder, a device or a pipe", path};
   }
+  if (access == Access::kWrite && is_link(path)) {
+    return Failure{Fault::kStore,
+                   "is a link, which is not written through; put the file itself in its place",
+                   path};
+  }
   // SQLite would make it for its owner alone to write, whatever the umask of a folder that a group
   // shares. Its journals are as the database is.
   if (access == Access::kWrite && !is_there(path)) {

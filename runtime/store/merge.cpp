@@ -12,6 +12,7 @@
 #include "runtime/store/proof.h"
 #include "runtime/store/run_plan.h"
 #include "runtime/store/store.h"
+#include "runtime/store/video_place.h"
 
 namespace probe::store {
 namespace {
@@ -194,8 +195,8 @@ Failure not_copied(const Failure& failure, const std::string& from, const std::s
   return {Fault::kStore, "cannot be copied to " + to + ": " + to_text(failure), from};
 }
 
-Status copy_video(const std::string& from, const std::string& to) {
-  PROBE_TRY(make_lasting_folders(fs::path(to).parent_path().string()));
+Status copy_video(const std::string& from, const std::string& out, const EpisodeKey& key) {
+  PROBE_ASSIGN(const std::string to, place_for_video(out, key));
   PendingFile pending(to);
   if (auto copied = copy_to_disk(from, pending.temporary()); !copied)
     return not_copied(copied.failure(), from, to);
@@ -215,7 +216,7 @@ class Taker {
     if (auto copied = copy_bytes(row.trace, temporary); !copied)
       return not_copied(copied.failure(), row.trace, temporary);
     const std::string video = video_path(source.dir, key);
-    if (is_file(video)) PROBE_TRY(copy_video(video, video_path(out_, key)));
+    if (is_file(video)) PROBE_TRY(copy_video(video, out_, key));
     if (source.unproven.contains(key)) doubted_.push_back(key);
     finished_.push_back({std::move(row), task_order});
     return finished_.size() < kAtOnce ? Status() : end();

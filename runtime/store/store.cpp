@@ -15,13 +15,14 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/json.h"
 #include "runtime/base/paths.h"
 #include "runtime/store/calls_table.h"
 #include "runtime/store/database.h"
 #include "runtime/store/folder_lock.h"
-#include "runtime/store/proof.h"
 #include "runtime/store/order_table.h"
+#include "runtime/store/proof.h"
 #include "runtime/store/remarks_table.h"
 #include "runtime/store/room.h"
 #include "runtime/store/run_plan.h"
@@ -126,8 +127,9 @@ using Access = Database::Access;
 std::string database_path(const std::string& dir) { return path_in(dir, kRunDatabase); }
 
 Failure no_run(const std::string& dir) {
-  return failed(holds_answers(dir) ? "holds a model's answers, not a run"
-                                   : "no run here: results.sqlite is absent",
+  return failed(holds_answers(dir)  ? "holds a model's answers, not a run"
+                : holds_search(dir) ? "holds a search, not a run: its runs lie in rounds/NNN/policy"
+                                    : "no run here: results.sqlite is absent",
                 dir);
 }
 
@@ -370,7 +372,7 @@ class FolderStore final : public Store {
       return record_.schema < kSchemaVersion ? raise_schema() : Status();
     }
     // The plan goes first: a folder with a record always has its plan.
-    PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
+    PROBE_TRY(write_plan(plan_bytes));
     PROBE_TRY(sync_folder(dir_));
     record_ = record;
     record_.schema = kSchemaVersion;
@@ -402,6 +404,7 @@ class FolderStore final : public Store {
   Result<std::string> temporary_trace(const EpisodeKey& key) const override {
     const std::string trace = trace_path(dir_, key);
     const std::string folder = fs::path(trace).parent_path().string();
+    PROBE_TRY(check_inside(dir_, fs::path(relative_trace(key)).parent_path().string()));
     if (auto made = make_lasting_folders(folder); !made) {
       return failed(made.failure().message, folder);
     }
@@ -562,6 +565,11 @@ class FolderStore final : public Store {
     return insert.done();
   }
 
+  Status write_plan(std::span<const std::byte> plan_bytes) const {
+    PROBE_ASSIGN(const std::string file, file_inside(dir_, "suite.plan"));
+    return write_file(file, plan_bytes);
+  }
+
   // A plan that was lost, damaged or exchanged since: `plan_bytes` are of the root in the record.
   Status put_plan_back(std::span<const std::byte> plan_bytes) const {
     if (plan_bytes.empty()) return {};
@@ -569,7 +577,7 @@ class FolderStore final : public Store {
     if (there && std::ranges::equal(std::as_bytes(std::span(*there)), plan_bytes)) return {};
     // Of one root there may be two files: with other texts, which are not part of it.
     if (open_run_plan(dir_).ok()) return {};
-    PROBE_TRY(write_file(plan_path(dir_), plan_bytes));
+    PROBE_TRY(write_plan(plan_bytes));
     return sync_folder(dir_);
   }
 
@@ -642,8 +650,7 @@ std::string video_path(const std::string& dir, const EpisodeKey& key) {
 Result<std::unique_ptr<Store>> Store::open(const std::string& dir, const RunRecord& record,
                                            std::span<const std::byte> plan_bytes) {
   if (dir.empty()) return failed("no folder to write into", "-o");
-  if (holds_answers(dir))
-    return failed("holds a model's answers; take another folder for a run", dir);
+  PROBE_TRY(check_holds_no_other(dir, FolderKind::kRun));
   if (auto made = make_lasting_folders(dir); !made) return failed(made.failure().message, dir);
   PROBE_ASSIGN(FolderLock lock, FolderLock::take(dir));
   PROBE_ASSIGN(Database database, Database::open(database_path(dir), Access::kWrite));

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/utf8.h"
 
@@ -106,7 +107,8 @@ Result<int> Folder::keep_table(const std::string& table) {
   const std::lock_guard lock(mutex_);
   int number = 1;
   while (is_there(root_ + "/" + table_name(number))) ++number;
-  PROBE_TRY(write_file(root_ + "/" + table_name(number), std::as_bytes(std::span(table))));
+  PROBE_ASSIGN(const std::string file, file_inside(root_, table_name(number)));
+  PROBE_TRY(write_file(file, std::as_bytes(std::span(table))));
   return number;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "runtime/base/inside.h"
 #include "runtime/base/own_folder.h"
 #include "runtime/base/say.h"
 #include "runtime/base/shell_word.h"
@@ -57,6 +58,10 @@ int demonstrate(const std::string& out) {
   }
   if (suite.empty())
     return report({Fault::kIo, "is not beside the program", "suite/intact.probe"});
+  for (const char* const run : {"expert", "reach"}) {
+    if (const auto own = check_inside(out, run); !own) return report(own.failure());
+  }
+  if (const auto page = file_inside(out, "report.html"); !page) return report(page.failure());
   for (const Step& step : steps(suite, out)) {
     if (const int exit = run_step(step); exit != kFine) return exit;
   }

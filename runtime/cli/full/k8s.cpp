@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "runtime/base/file.h"
+#include "runtime/base/folder_kind.h"
+#include "runtime/base/inside.h"
 #include "runtime/base/paths.h"
 #include "runtime/base/say.h"
 #include "runtime/cli/full/run_options.h"
@@ -23,8 +25,9 @@ struct KubernetesArguments {
   cluster::KubernetesJob job;
 };
 
-Status write(const std::string& path, const std::string& text) {
-  return write_file(path, std::as_bytes(std::span(text)));
+Status write(const std::string& out, const std::string& below, const std::string& text) {
+  PROBE_ASSIGN(const std::string file, file_inside(out, below));
+  return write_file(file, std::as_bytes(std::span(text)));
 }
 
 // "`objects/mug` and 2 more lie in `my/models`": what the program has not itself.
@@ -65,10 +68,12 @@ Status write_manifests(KubernetesArguments& arguments, const run::RunOptions& op
   job.run_arguments = cluster::run_words(options);
   PROBE_ASSIGN(const std::string shards, cluster::job_manifest(job, plan));
   PROBE_ASSIGN(const std::string merge, cluster::merge_manifest(job));
+  PROBE_TRY(check_holds_no_other(options.out, FolderKind::kRun));
   const std::string folder = options.out + "/k8s";
+  PROBE_TRY(check_inside(options.out, "k8s"));
   PROBE_TRY(make_folders(folder));
-  PROBE_TRY(write(folder + "/job.yaml", shards));
-  PROBE_TRY(write(folder + "/merge.yaml", merge));
+  PROBE_TRY(write(options.out, "k8s/job.yaml", shards));
+  PROBE_TRY(write(options.out, "k8s/merge.yaml", merge));
   say("{0}/job.yaml: {1} shards; kubectl apply -f {0}/job.yaml, and behind it {0}/merge.yaml\n",
       folder, job.tasks);
   return {};

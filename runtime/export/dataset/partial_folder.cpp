@@ -58,7 +58,9 @@ Result<PartialFolder> PartialFolder::create(const std::string& out, const std::s
   }
   const std::string path = target + ".partial";
   if (is_there(path) || is_link(path)) {
-    const bool is_ours = !is_link(path) && is_file(path + "/" + kMark);
+    // Nobody who sent it has us write behind a link.
+    const bool is_ours = !is_link(path) && is_file(path + "/" + kMark) &&
+                         !is_link(path + "/" + kMark) && !is_link(path + "/" + kFinished);
     const auto names = is_folder(path)
                            ? list_folder(path)
                            : Result<std::vector<std::string>>(Failure{Fault::kUsage, "", path});

@@ -219,6 +219,22 @@ TEST_CASE("a server's transcript leaves the certificate and the profile that it 
   CHECK(test::read_file(box / "own.txt") == profile);
 }
 
+TEST_CASE("a folder that holds a search is no folder of runs") {
+  const test::Sandbox box;
+  test::write_file(box / "found/search.json", "{}");
+  const std::string few = "\"$SUITE\" --tasks carrot_on_plate --episodes 0 --policy null -o found";
+  for (const std::string& verb :
+       {"run " + few, "slurm --array 2 " + few, "k8s --array 2 --image i --claim c " + few}) {
+    CAPTURE(verb);
+    const test::Outcome outcome = box.vlaprobe(verb);
+    CHECK(outcome.exit == 2);
+    CHECK(test::contains(outcome.err, "holds a search; take another folder for a run"));
+  }
+  CHECK(std::distance(fs::directory_iterator(box / "found"), fs::directory_iterator()) == 1);
+  const test::Outcome results = box.vlaprobe("results found");
+  CHECK(test::contains(results.err, "holds a search, not a run"));
+}
+
 TEST_CASE("the program without the other verbs says so in the place of the one that has them") {
   const test::Sandbox box;
   fs::copy_file(VLAPROBE_BINARY_DIR "/vlaprobe", box / "vlaprobe");

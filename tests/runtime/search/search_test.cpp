@@ -110,6 +110,30 @@ TEST_CASE("a folder that is no search's is left alone, and so is one of another 
   CHECK(search.refused().message.find("not what a search wrote") != std::string::npos);
 }
 
+TEST_CASE("a search writes into no folder of a run, and behind no link of its own folder") {
+  const run::TemporaryFolder folder;
+  const auto refusal = [&] {
+    const Status status = check_search_folder(folder.path);
+    return status.ok() ? "" : to_text(status.failure());
+  };
+  CHECK(refusal().empty());
+  std::filesystem::create_directories(folder / "rounds/001");
+  std::filesystem::create_directories(folder / "other");
+  std::ofstream(folder / "other/mine") << "mine";
+  for (const char* const link : {"rounds/001/points.csv", "rounds/001/policy", "rounds/002"}) {
+    CAPTURE(link);
+    std::filesystem::create_symlink(folder / "other", folder / link);
+    CHECK(refusal().starts_with(folder / link + ": is a link"));
+    std::filesystem::remove(folder / link);
+  }
+  std::filesystem::create_symlink(folder / "other/mine", folder / "search.json");
+  CHECK(write_search(folder.path, {{"format", "vlaprobe search"}}).ok());
+  CHECK(read_file(folder / "other/mine").value() == "mine");
+  CHECK(is_search(folder.path));
+  std::ofstream(folder / "results.sqlite") << "";
+  CHECK(refusal() == folder.path + ": holds a run; take another folder for a search");
+}
+
 TEST_CASE(
     "points that the compiler refuses are left out with its reason, those before them searched") {
   // Far from where it lies, the carrot is off the table or under the plate.

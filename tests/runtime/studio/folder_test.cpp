@@ -112,6 +112,10 @@ TEST_CASE("a table of starts takes a name that nothing has") {
   CHECK((*folder)->keep_table("ours").value() == 2);
   CHECK(place.read("in/a_kept_1.csv") == "another's");
   CHECK(place.read("in/a_kept_2.csv") == "ours");
+  fs::create_symlink(place.path("out/new.csv"), place.path("in/a_kept_3.csv"));
+  CHECK((*folder)->keep_table("ours").value() == 3);
+  CHECK(!fs::exists(place.path("out/new.csv")));
+  CHECK(place.read("in/a_kept_3.csv") == "ours");
 }
 
 TEST_CASE("what an editor would alter or is too large is refused by name") {

@@ -273,6 +273,12 @@ TEST_CASE("folders of others are refused, what a killed export left is begun ane
   std::ofstream(made.out + ".partial/mine.txt") << "mine";
   CHECK(!export_dataset({made.run}, made.out, Format::kLerobot, dataset_options()).ok());
   CHECK(text_of(made.out + ".partial/mine.txt") == "mine");
+  // As nobody but a stranger leaves it.
+  std::ofstream(made.out + ".mine") << "mine";
+  fs::create_symlink(made.out + ".mine", made.out + ".partial/.vlaprobe-export");
+  CHECK(!export_dataset({made.run}, made.out, Format::kLerobot, dataset_options()).ok());
+  CHECK(text_of(made.out + ".mine") == "mine");
+  fs::remove(made.out + ".partial/.vlaprobe-export");
   // As a killed export leaves it.
   std::ofstream(made.out + ".partial/.vlaprobe-export") << "";
   must_export(made.run, made.out, Format::kLerobot, dataset_options());
