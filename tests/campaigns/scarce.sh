@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # tests/campaigns/scarce.sh [ROUNDS [VLAPROBE]]: ROUNDS (20) times each, a run where something is scarce at random: file handles,
 # memory, the largest file, room on the disk, names on the disk, a disk that is read-only, a clock that jumps, a second
-# writer in the folder; and verbs that read a run with few handles and little memory. What happens may be refused, by
-# a sentence, but not by a signal and not after more than a minute; and the same command without the scarcity has to come to the rows of
-# a run that lacked nothing. What needs root or faketime is skipped where that is not there, saying so. Exit 0: nothing found.
+# writer in the folder; verbs that read a run with few handles and little memory; and in each round two of the other verbs that write
+# (verbs.sh). What happens may be refused, by a sentence, but not by a signal and not after more than a minute; and the same command
+# without the scarcity has to come to the rows or bytes of one that lacked nothing. What needs root or faketime is skipped where that is not there, saying so. Exit 0: nothing found.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
 rounds=${1:-20} vlaprobe=${2:-$here/build/vlaprobe}
@@ -23,6 +23,16 @@ rows() { "$vlaprobe" results "$1" --json | grep -v '"trace":'; } # FOLDER
 rows "$work/calm" >"$work/calm.rows"
 "$vlaprobe" run "${asked[@]}" --shard 1/2 -o "$work/half-1" >>"$work/log" 2>&1
 "$vlaprobe" run "${asked[@]}" --shard 2/2 -o "$work/half-2" >>"$work/log" 2>&1
+
+. "$here/tests/campaigns/verbs.sh"
+writers=(merge sweep ask table dataset)
+mkdir "$work/verbs"
+cd "$work/verbs"
+verbs_begin
+for verb in "${writers[@]}"; do
+  (start "$verb" "calm.$verb") >log 2>&1 || { cat log; exit 2; }
+  content "$verb" "calm.$verb" >"$verb.content"
+done
 
 calls=0 refused=0 found=0
 finding() { # WHAT
@@ -68,6 +78,23 @@ reading() { # NAME FLAG VALUE: verbs that read
   recovers "merge, $1 $3" "$work/merged"
   suffers "judge, $1 $3" "${under[@]}" "$vlaprobe" judge "$work/calm"
 }
+# ends_well NAME VERB OUTPUT: without the scarcity. A dataset's folder that is there is not written into.
+ends_well() {
+  local name=$1 verb=$2 out=$3
+  if ! { [ "$verb" = dataset ] && [ -e "$out" ]; } && ! (start "$verb" "$out") >"$work/said" 2>&1; then
+    finding "$name: the same command does not go on"
+    return
+  fi
+  content "$verb" "$out" >"$work/content" 2>"$work/said" || { finding "$name: its output is not read"; return; }
+  cmp -s "$verb.content" "$work/content" || { diff "$verb.content" "$work/content" >"$work/said" || true; finding "$name: another output than without it"; }
+}
+export -f start  # `timeout` starts programs alone
+export vlaprobe here
+writing() { # VERB NAME FLAG VALUE: under one limit of the shell's
+  rm -rf limited limited.h5* limited.partial
+  suffers "$1, $2 $4" bash -c "$(declare -p few); ulimit -$3 $4; start \"\$@\"" - "$1" limited
+  ends_well "$1, $2 $4" "$1" limited
+}
 disk() { # OPTIONS: a small disk of its own
   mountpoint -q "$mounted" && umount -l "$mounted"
   mkdir -p "$mounted"
@@ -78,14 +105,27 @@ disk size=1m 2>/dev/null || { can_mount=; echo "skipped: disks that are full or 
 command -v faketime >/dev/null || echo "skipped: clocks that jump, which need faketime"
 
 for ((round = 0; round < rounds; ++round)); do
-  between few 8 60
-  limited "handles" n "$few"
-  reading "handles" n "$few"
+  between few_handles 8 60
+  limited "handles" n "$few_handles"
+  reading "handles" n "$few_handles"
   between little 60000 900000 # KiB
   limited "memory" v "$little"
   reading "memory" v "$little"
   between small 1 400
   limited "KiB in a file" f "$small"
+  for verb in "${writers[round % 5]}" "${writers[(round + 2) % 5]}"; do
+    writing "$verb" "handles" n "$few_handles"
+    writing "$verb" "memory" v "$little"
+    writing "$verb" "KiB in a file" f "$small"
+    [ "$can_mount" ] || continue
+    between room_kib 4 400
+    disk "size=${room_kib}k"
+    suffers "$verb, a disk of ${room_kib} KiB" bash -c "$(declare -p few); start \"\$@\"" - "$verb" "$mounted/out"
+    mount -o remount,ro "$mounted"
+    suffers "$verb, a disk that is read-only" bash -c "$(declare -p few); start \"\$@\"" - "$verb" "$mounted/out"
+    mount -o remount,rw,size=1g "$mounted"
+    ends_well "$verb, a disk of ${room_kib} KiB" "$verb" "$mounted/out"
+  done
   if [ "$can_mount" ]; then
     between room_kib 40 2000
     between names 3 40

@@ -13,26 +13,8 @@ trap 'rm -rf "$dir"' EXIT
 RANDOM=21
 cd "$dir"
 
-few=(--tasks carrot_on_plate --episodes 0-5)
-verbs=(run sweep merge table dataset)
-start() { # VERB OUTPUT
-  case $1 in
-    run) exec "$vlaprobe" run suite.plan "${few[@]}" --policy expert --jobs 2 -o "$2" ;;
-    sweep) exec "$vlaprobe" sweep suite.plan "${few[@]}" --policy 'weak:ambient<{}' --checkpoints 0.1,0.5 -o "$2" ;;
-    merge) exec "$vlaprobe" merge odd even -o "$2" ;;
-    table) exec "$vlaprobe" export calm.run -o "$2.h5" ;;
-    dataset) exec "$vlaprobe" export calm.run --format lerobot --size 64x48 -o "$2" ;;
-  esac
-}
-rows_of() { "$vlaprobe" results "$1" --csv | sed 's/[^,]*\.trace//'; }  # without where traces lie
-content() { # VERB OUTPUT: what two outputs that are equal have in common
-  case $1 in
-    run | merge) rows_of "$2" ;;
-    sweep) for part in "$2"/0.1 "$2"/0.5; do rows_of "$part"; done ;;
-    table) sha256sum <"$2.h5" ;;
-    dataset) (cd "$2" && find . -type f -print0 | sort -z | xargs -0 sha256sum) ;;
-  esac
-}
+. "$here/tests/campaigns/verbs.sh"
+verbs=(run sweep merge table dataset)  # ask_kills.sh is of the other
 wrong() { # VERB WHAT
   echo "kill $kill of $1: $2"
   tail -n 5 "$dir/log" "$dir/look"
@@ -57,14 +39,11 @@ wait_up_to() { # MILLISECONDS: a moment of them, drawn in this shell: others are
   sleep "$(printf "%d.%03d" $((at / 1000)) $((at % 1000)))"
 }
 
-"$vlaprobe" build "$here/suite/intact.probe" -o suite.plan >/dev/null
-for share in odd even; do
-  [ "$share" = odd ] && part=1/2 || part=2/2
-  "$vlaprobe" run suite.plan "${few[@]}" --policy expert --shard "$part" -o "$share" >log 2>&1
-done
+verbs_begin
 declare -A takes
 kill=0
 for verb in "${verbs[@]}"; do
+  rm -rf "calm.$verb"  # calm.run is there
   begun=$(date +%s%N)
   (start "$verb" "calm.$verb") >log 2>&1 || wrong "$verb" "it does not end well when nobody disturbs it"
   takes[$verb]=$(((($(date +%s%N) - begun) / 1000000) * 11 / 10 + 1))
