@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# tests/campaigns/soak.sh [MINUTES [FOLDER [VLAPROBE]]]: one call of `run` that goes on for MINUTES (60) with pictures over a server, and
-# every ten seconds its memory and its open files, into FOLDER/soak.csv (seconds, KiB resident, files, threads, episodes). What grows is a
+# tests/campaigns/soak.sh [MINUTES [FOLDER [VLAPROBE]]]: one call of `run` that goes on for MINUTES (60; 20s are seconds) with pictures
+# over a server, and every ten seconds its memory and its open files, into FOLDER/soak.csv (seconds, KiB resident, files, threads, episodes). What grows is a
 # finding: the median of the last fifth more than 5 % and 8 MiB above that of the second fifth, or more than 2 files. A day is `soak.sh
 # 1440`. Exit 0: nothing grew and no episode is invalid.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
-minutes=${1:-60} folder=${2:-$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-soak-XXXXXX")} vlaprobe=${3:-$here/build/vlaprobe}
+lasts=${1:-60} folder=${2:-$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-soak-XXXXXX")} vlaprobe=${3:-$here/build/vlaprobe}
+case $lasts in *s) lasts=${lasts%s} ;; *) lasts=$((lasts * 60)) ;; esac
 mkdir -p "$folder"
 python=/usr/bin/python3 server='' client=''
 stop() {
@@ -23,8 +24,8 @@ for _ in {1..200}; do grep -q port "$folder/server.log" && break; sleep 0.05; do
 client=$!
 echo "seconds,resident_kib,files,threads,episodes" >"$folder/soak.csv"
 begun=$SECONDS
-while ((SECONDS - begun < minutes * 60)) && kill -0 "$client" 2>/dev/null; do
-  sleep "$((minutes > 2 ? 10 : 1))"
+while ((SECONDS - begun < lasts)) && kill -0 "$client" 2>/dev/null; do
+  sleep "$((lasts > 120 ? 10 : 1))"
   # The program that the first one became or started.
   process=$(pgrep -P "$client" -f vlaprobe-full | head -n 1 || true)
   process=${process:-$client}
