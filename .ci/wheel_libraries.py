@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Puts beside a library all others that it needs and no Linux promises, so that a wheel of it may be called manylinux.
 
-    wheel_libraries.py FOLDER [--look-in FOLDER]     prints the platform tag, manylinux_2_36_x86_64
+    wheel_libraries.py FOLDER [--look-in FOLDER:FOLDER..]     prints the platform tag, manylinux_2_36_x86_64
 
 FOLDER is a package's folder of libraries. As auditwheel does it (PEP 600): libraries of the C library and the compiler stay
 the system's; each other is copied, is found from its own folder alone and has a hash in its name, so that no other package's of
