@@ -184,6 +184,8 @@ struct OpenVideo {
   }
 };
 
+constexpr std::int64_t kMostPixels = 64'000'000;  // of a picture that is read
+
 class DecodedClip final : public ClipReader {
  public:
   explicit DecodedClip(std::string path) : path_(std::move(path)) {}
@@ -214,10 +216,14 @@ class DecodedClip final : public ClipReader {
     code = avcodec_open2(codec_, decoder, nullptr);
     if (code < 0) return failed("cannot be decoded", code);
     if (codec_->width <= 0 || codec_->height <= 0) return failed("has pictures without size", 0);
-    scaler_ =
-        sws_getContext(codec_->width, codec_->height, codec_->pix_fmt, codec_->width,
-                       codec_->height, AV_PIX_FMT_RGB24,
-                       SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND, nullptr, nullptr, nullptr);
+    if (std::int64_t{codec_->width} * codec_->height > kMostPixels)
+      return failed("has pictures of more than " + std::to_string(kMostPixels) + " pixels", 0);
+    // The scaler ends the program where it is given another.
+    colours_ = codec_->pix_fmt;
+    if (sws_isSupportedInput(colours_) == 0) return failed("does not say what its pixels are", 0);
+    scaler_ = sws_getContext(codec_->width, codec_->height, colours_, codec_->width, codec_->height,
+                             AV_PIX_FMT_RGB24, SWS_BILINEAR | SWS_BITEXACT | SWS_ACCURATE_RND,
+                             nullptr, nullptr, nullptr);
     if (scaler_ == nullptr) return failed("no colour conversion", 0);
     rgb_bytes_ = 3 * static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
     rgb_.resize(rgb_bytes_ + 64);  // the scaler may write a few bytes behind a row's end
@@ -259,6 +265,7 @@ class DecodedClip final : public ClipReader {
   Result<std::span<const std::uint8_t>> shown() {
     if (frame_->width != width() || frame_->height != height())
       return failed("changes the size of its pictures", 0);
+    if (frame_->format != colours_) return failed("changes what its pixels are", 0);
     std::uint8_t* rows[] = {rgb_.data()};
     const int strides[] = {3 * width()};
     sws_scale(scaler_, frame_->data, frame_->linesize, 0, height(), rows, strides);
@@ -271,6 +278,7 @@ class DecodedClip final : public ClipReader {
   AVCodecContext* codec_ = nullptr;
   AVFrame* frame_ = nullptr;
   SwsContext* scaler_ = nullptr;
+  AVPixelFormat colours_ = AV_PIX_FMT_NONE;  // that it takes
   std::size_t rgb_bytes_ = 0;
   std::vector<std::uint8_t> rgb_;
 };

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "tests/runtime/run/temporary_folder.h"
+#include "tests/runtime/scene/mutate.h"
 
 namespace probe::show {
 namespace {
@@ -86,6 +87,28 @@ TEST_CASE("a video's pictures come back in order, nearly as they were, and then 
   CHECK((*reader)->next()->empty());
   CHECK(ClipReader::create(folder / "no.mp4").failure().where == folder / "no.mp4");
   CHECK(!ClipReader::create("/dev/null").ok());
+}
+
+TEST_CASE("a damaged video is read, or refused with a reason") {
+  const run::TemporaryFolder folder;
+  join(folder / "good.mp4", {clip_of(3, 1)});
+  const std::string good = bytes_of(folder / "good.mp4"), path = folder / "bad.mp4";
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    std::ofstream(path, std::ios::binary) << scene::test::mutated(good, seed);
+    CAPTURE(seed);
+    const auto reader = ClipReader::create(path);
+    if (!reader) {
+      ++refused;
+      CHECK_FALSE(reader.failure().message.empty());
+      continue;
+    }
+    for (int frame = 0; frame < 10; ++frame) {
+      const auto rgb = (*reader)->next();
+      if (!rgb || rgb->empty()) break;
+    }
+  }
+  CHECK(refused > 0);
 }
 
 TEST_CASE("odd sides, clips of two formats and a full disk are told") {
