@@ -1,12 +1,13 @@
 """A server that speaks LeRobot's asynchronous inference as its policy_server.py does: one place for an
 observation, one policy for all, pickles both ways. PyTorch's tensors are written by hand.
 
-lerobot_server.py [chunk=N] [record=FILE] [lacks=MODEL] [port=N] [seen] [arrivals] [impatient]
+lerobot_server.py [chunk=N] [record=FILE] [lacks=MODEL] [dies_of=MODEL] [port=N] [seen] [arrivals] [impatient]
 
 Answers chunks of N actions whose first number is the count of actions answered so far / 1000, or, with
 `seen`, small ones that follow from what was asked and which model is loaded.
 `record` gets a line of JSON for each call, with `arrivals` also when actions are asked for and when an
-observation has arrived. With `impatient` who asks before there is one gets nothing at once. The model `lacks` cannot be loaded. An instruction
+observation has arrived. With `impatient` who asks before there is one gets nothing at once. The model `lacks`
+cannot be loaded, and `dies_of` ends the server. An instruction
 "fault:NAME" makes that answer fail as named in FAULTS.
 """
 import hashlib
@@ -228,6 +229,8 @@ class Server(grpc.GenericRpcHandler):
         self.note("SendPolicyInstructions", **vars(config))
         if config.pretrained_name_or_path == options.get("lacks"):
             raise FileNotFoundError("no model at " + config.pretrained_name_or_path)
+        if config.pretrained_name_or_path == options.get("dies_of"):
+            os._exit(1)
         self.config = config
         return b""
 

@@ -161,7 +161,8 @@ class LeRobot : public Transport {
   Status load(const Request& request, const Deadlines& deadlines) {
     return shared_->load_once([&]() -> Status {
       setup_.features = features_of(request, tag_);
-      auto loaded = call(lerobot::send_policy(setup_), deadlines.answer);
+      // Not called(): there is no loading to forget yet, and who loads holds what forgets.
+      auto loaded = channel_->call(lerobot::send_policy(setup_), deadlines.answer);
       if (loaded) return {};
       Failure failure = loaded.failure();
       failure.message = "loading `" + setup_.model + "`: " + failure.message;

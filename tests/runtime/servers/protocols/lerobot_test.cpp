@@ -215,6 +215,17 @@ TEST_CASE("LeRobot: a policy that cannot be loaded is named, and with every late
   }
 }
 
+TEST_CASE("LeRobot: a server that dies of loading its policy costs one episode, and no run waits") {
+  const PythonServer server("lerobot_server.py", {"dies_of=/m"});
+  PolicyContext context;
+  context.model = std::make_shared<SharedModel>();
+  const auto policy = lerobot_at(server, kQuick, context);
+  CHECK(ask_once(*policy, "put carrot on plate") ==
+        "127.0.0.1:" + server.port() + ": loading `/m`: the server went away");
+  CHECK(ask_once(*policy, "put carrot on plate")
+            .starts_with("127.0.0.1:" + server.port() + ": connecting: Connection refused"));
+}
+
 TEST_CASE("LeRobot: worlds at one server take turns, and each has its own answers") {
   ServeOptions options;
   options.policy = serve_digest().value();
