@@ -69,7 +69,7 @@ class RldsCheck {
     PROBE_ASSIGN(const std::string text, read_file(path));
     const Json info = Json::parse(text);
     const Json* splits = info.find("splits");
-    if (splits == nullptr || splits->size() != 1) return strange;
+    if (splits == nullptr || !splits->is_array() || splits->size() != 1) return strange;
     const Json* lengths = splits->front().find("shardLengths");
     if (lengths == nullptr || !lengths->is_array()) return strange;
     for (const Json& length : *lengths) {

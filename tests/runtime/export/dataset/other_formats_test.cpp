@@ -361,6 +361,11 @@ TEST_CASE("an RLDS dataset that was changed does not pass its check") {
   with_bytes([](std::string& bytes) { bytes.clear(); }, "has 0 records, the split says 4");
   std::filesystem::remove(shard);
   check_told(out, "cannot be read");
+  for (const char* const splits : {R"({"train": 4})", "4", "[]"}) {
+    std::ofstream(shard.substr(0, shard.rfind('/')) + "/dataset_info.json")
+        << R"({"name": "vlaprobe", "splits": )" << splits << "}";
+    check_told(out, "is not what `vlaprobe export` writes");
+  }
 }
 
 TEST_CASE("a robomimic file that was changed does not pass its check") {
