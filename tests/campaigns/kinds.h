@@ -33,6 +33,7 @@ struct Kind {
   std::function<Status(const Given& file)> read;
   // Where bytes of one form are not all that there is to damage; none: as the name's ending says.
   std::function<std::string(std::string bytes, std::uint64_t seed)> damage = nullptr;
+  bool waits = false;  // for who does not answer: has fewer turns
 };
 
 std::string text_of(const std::filesystem::path& path);

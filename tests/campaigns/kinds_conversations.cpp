@@ -360,10 +360,12 @@ void add_questions(std::vector<Kind>& kinds, const fs::path& work) {
 }  // namespace
 
 void add_conversations(std::vector<Kind>& kinds, const fs::path& work) {
+  const std::size_t before = kinds.size();
   add_answers_of_protocols(kinds);
   add_streams(kinds);
   add_http(kinds);
   add_questions(kinds, work);
+  for (std::size_t i = before; i < kinds.size(); ++i) kinds[i].waits = true;
 }
 
 }  // namespace probe::campaign

@@ -43,6 +43,21 @@ Damaged damaged_sample(const Kind& kind, std::uint64_t seed, bool is_whole) {
   return out;
 }
 
+// Which kind a seed is of, and whether of one that is whole. Round by round each has a turn; in
+// most rounds those that wait leave theirs to others.
+struct Turn {
+  std::size_t kind;
+  bool is_whole;
+};
+Turn turn_of(std::uint64_t seed, const std::vector<Kind>& kinds) {
+  const std::uint64_t round = seed / kinds.size();
+  std::size_t kind = seed % kinds.size();
+  if (round % 64 >= 4 && !std::ranges::all_of(kinds, &Kind::waits)) {
+    for (std::uint64_t step = round; kinds[kind].waits; ++step) kind = (seed + step) % kinds.size();
+  }
+  return {kind, round % 16 == 0};
+}
+
 // By this process and those that it waited for, where files are parsed apart.
 struct Spent {
   long most_kb = 0;
@@ -110,9 +125,8 @@ int attack(const Options& options) {
   return run(
       options, {.seconds = 20, .memory = rlim_t{4} << 30},
       [&](Tally& tally) {
-        const std::size_t which = tally.seed % kinds.size();
+        const auto [which, is_whole] = turn_of(tally.seed, kinds);
         const Kind& kind = kinds[which];
-        const bool is_whole = tally.seed / kinds.size() % 16 == 0;
         const Damaged file = damaged_sample(kind, tally.seed, is_whole);
         const std::string path = (work.path / fs::path(file.name).filename()).string();
         write_text(path, file.bytes);
