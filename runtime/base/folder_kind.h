@@ -60,12 +60,15 @@ inline bool holds_answers(const std::string& dir) { return holds(dir, FolderKind
 inline bool holds_search(const std::string& dir) { return holds(dir, FolderKind::kSearch); }
 
 // Whether a name in a folder of that kind is one of its own: the mark, what SQLite has beside a
-// database, and the names of the table.
+// database, and the names of the table. Nothing else: what of a folder is not its own is kept when
+// the rest is removed, such as a copy that the user made of the database.
 inline bool is_own_name(const FolderRow& row, std::string_view name) {
   for (const std::string_view own : row.names) {
     if (name == own) return true;
   }
-  return name.starts_with(row.mark);
+  if (!name.starts_with(row.mark)) return false;
+  name.remove_prefix(std::string_view(row.mark).size());
+  return name.empty() || name == "-journal" || name == "-wal" || name == "-shm";
 }
 
 // Before a folder is begun with, or gone on with, as of that kind. Fails (kStore, where = dir)

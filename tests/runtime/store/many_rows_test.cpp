@@ -221,6 +221,13 @@ TEST_CASE("what no row needs is found, and removed when it is asked for") {
   CHECK(fs::exists(task + "/notes.txt"));
   CHECK(read_proven_results(dir)->rows.size() == rows.size());
   CHECK(find_spares(dir)->spares.empty());
+  // A copy of the database beside it is the user's as well.
+  fs::rename(dir + "/shards/2-of-2/notes.txt", dir + "/shards/2-of-2/results.sqlite.bak");
+  const auto copied = find_spares(dir);
+  REQUIRE(copied.ok());
+  CHECK(copied->spares.empty());
+  REQUIRE(copied->notes.size() == 1);
+  CHECK(copied->notes[0].find("`results.sqlite.bak`, which no run makes") != std::string::npos);
 }
 
 TEST_CASE("a merge that was preempted at any point is finished by the same call") {
