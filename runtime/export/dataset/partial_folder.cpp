@@ -1,5 +1,8 @@
 #include "runtime/export/dataset/partial_folder.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -17,9 +20,19 @@ constexpr const char* kDataset = "dataset";
 constexpr const char* kLock = "lock";  // FolderLock's
 constexpr const char* kFinished = "finished";
 
-// Nothing but what is there before the mark is: a cut may leave that.
+// Nothing but what is there before the mark is, or the mark before it has its name (PendingFile): a
+// cut may leave that.
 bool is_only_begun(const std::vector<std::string>& names) {
-  return std::ranges::all_of(names, [](const std::string& name) { return name == kLock; });
+  return std::ranges::all_of(names, [](const std::string& name) {
+    return name == kLock || (name.starts_with(std::string(kMark) + ".") && name.ends_with(".tmp"));
+  });
+}
+
+// What a disk is mounted on: it can be neither removed nor replaced. No where that cannot be asked.
+bool is_mount_point(const std::string& path) {
+  struct statx about {};
+  return ::statx(AT_FDCWD, path.c_str(), 0, STATX_TYPE, &about) == 0 &&
+         (about.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
 Status sync_folders(const std::string& root) {
@@ -49,12 +62,21 @@ Status clear(const std::string& path, bool with_finished) {
 Result<PartialFolder> PartialFolder::create(const std::string& out, const std::string& making) {
   std::string target = absolute_path(out);
   while (target.size() > 1 && target.ends_with('/')) target.pop_back();
+  // An empty folder behind a link, as on a larger disk: the dataset goes there.
+  std::error_code unresolved;
+  if (is_link(target) && is_folder(target)) target = fs::canonical(target, unresolved).string();
+  if (unresolved) return Failure{Fault::kUsage, "a link that leads nowhere", out};
   if (is_there(target) || is_link(target)) {
     const auto names = is_folder(target)
                            ? list_folder(target)
                            : Result<std::vector<std::string>>(Failure{Fault::kUsage, "", out});
     if (!names || !names->empty())
       return Failure{Fault::kUsage, "is there already; a dataset is written to a new folder", out};
+    if (is_mount_point(target))
+      return Failure{Fault::kUsage,
+                     "is where a disk is mounted, which no dataset can take the place of; name a "
+                     "folder in it",
+                     out};
   }
   const std::string path = target + ".partial";
   if (is_there(path) || is_link(path)) {

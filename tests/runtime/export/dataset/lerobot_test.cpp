@@ -1,4 +1,6 @@
 // A run as a LeRobot dataset: what others read in it is what the traces have.
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -289,8 +291,44 @@ TEST_CASE("folders of others are refused, what a killed export left is begun ane
   fs::remove_all(made.out);
   fs::create_directories(made.out + ".partial");
   std::ofstream(made.out + ".partial/lock") << "";
+  // Or while it was written.
+  std::ofstream(made.out + ".partial/.vlaprobe-export.4711-0.tmp") << "";
   must_export(made.run, made.out, Format::kLerobot, dataset_options());
   CHECK(!fs::exists(made.out + "/lock"));
+  CHECK(!fs::exists(made.out + ".partial"));
+}
+
+TEST_CASE("a dataset goes to the empty folder that a link leads to") {
+  const Exported made;
+  fs::create_directories(made.out + ".elsewhere/empty");
+  fs::create_directory_symlink(made.out + ".elsewhere/empty", made.out);
+  must_export(made.run, made.out, Format::kLerobot, dataset_options());
+  CHECK(fs::is_symlink(made.out));
+  CHECK(fs::exists(made.out + ".elsewhere/empty/meta/info.json"));
+}
+
+TEST_CASE("a folder that a disk is mounted on is refused before anything is drawn") {
+  const Exported made;
+  fs::create_directories(made.out);
+  enum Exit { kRefused, kElse, kCannotMount };
+  const pid_t child = fork();  // with mounts of its own
+  if (child == 0) {
+    if (unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0 ||
+        mount("none", made.out.c_str(), "tmpfs", 0, nullptr) != 0)
+      _exit(kCannotMount);
+    const auto done = export_dataset({made.run}, made.out, Format::kLerobot, dataset_options());
+    _exit(!done && done.failure().message.starts_with("is where a disk is mounted") ? kRefused
+                                                                                    : kElse);
+  }
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  REQUIRE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == kCannotMount) {
+    MESSAGE("skipped: no disk can be mounted here");
+    return;
+  }
+  CHECK(WEXITSTATUS(status) == kRefused);
+  CHECK(!fs::exists(made.out + ".partial"));
 }
 
 // An export in a process of its own that is killed when so many demonstrations are done.
