@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "runtime/plan/magnitudes.h"
 #include "runtime/world/colliders.h"
 
 namespace probe::world {
@@ -16,7 +17,8 @@ namespace {
 using std::size_t;
 
 constexpr double kBeyondLimit = 1e-3;  // m or rad that a joint may start past a limit, by rounding
-constexpr double kLongest = 0.02;  // s, of a substep: ten times the reference's; tests go to 5 ms
+// s, of a substep: ten times the reference's; tests go to 5 ms. A plan's verifier asks the same.
+constexpr double kLongest = 1 / plan::info(plan::Magnitude::kPhysicsRate).least;
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 Failure fail(std::string message) { return {Fault::kWorld, std::move(message), ""}; }

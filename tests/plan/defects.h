@@ -207,6 +207,7 @@ inline std::vector<Defect> catalogue_defects() {
        }},
       {"SCNE", "a friction", [](Records& r, Writer&) { r.scenes[0].friction = 1e10; }},
       {"SCNE", "a physics rate", [](Records& r, Writer&) { r.scenes[0].physics_hz = 1e-300; }},
+      {"SCNE", "a physics rate", [](Records& r, Writer&) { r.scenes[0].physics_hz = 45; }},
       {"REAL", "a joint's position", [](Records& r, Writer&) { r.reals[0] = 1e6; }},
       {"DRIV", "a drive's gain", [](Records& r, Writer&) { r.drives[0].stiffness = 1e20; }},
       {"DRIV", "the limit of a drive", [](Records& r, Writer&) { r.drives[0].limit = 1e-300; }},

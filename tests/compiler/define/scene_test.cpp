@@ -22,6 +22,14 @@ TEST_CASE("a control step is a whole number of physics steps") {
   CHECK(refused("scene s like bench { physics 7Hz friction 1 }") == "7Hz");
 }
 
+TEST_CASE("a physics rate that no world can bear is refused where it is written") {
+  CHECK(refused("scene s like bench { physics 5Hz friction 1 }") == "5Hz");
+  CHECK(refused("scene s like bench { physics 40Hz friction 1 }") == "40Hz");
+  const auto a = analyze_with_suite("scene s like bench { physics 40Hz friction 1 }");
+  CHECK(a->codes() == "P0304");
+  CHECK(a->said().find("a physics rate from 50 to 1e+06 Hz") != std::string::npos);
+}
+
 TEST_CASE("joints start within their limits") {
   CHECK(refused("scene s like bench { robot arm at (50cm, 0cm) yaw 180deg; joints (1rad, 2cm, "
                 "2cm) }") == "");
