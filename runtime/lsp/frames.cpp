@@ -67,6 +67,8 @@ std::optional<FrameReader::Frame> FrameReader::read_headers() {
   }
   at_ += at;
   if (!length) return Frame{"", mistake.empty() ? "a header without Content-Length" : mistake};
+  if (*length > kMaxSkippedBytes)
+    return Frame{"", "a message of more than 1 GiB, which nobody sends"};
   if (*length > kMaxMessageBytes) {
     const std::size_t here = std::min(*length, bytes_.size() - at_);
     at_ += here;

@@ -11,6 +11,9 @@ namespace probe::lsp {
 
 inline constexpr std::size_t kMaxMessageBytes = std::size_t{64} << 20;
 inline constexpr std::size_t kMaxHeaderBytes = 8192;
+// Of a message that is too large the bytes are passed over, unless it says more than that: nobody
+// sends them, and what comes next is read as headers.
+inline constexpr std::size_t kMaxSkippedBytes = std::size_t{1} << 30;
 
 class FrameReader {
  public:

@@ -51,6 +51,17 @@ TEST_CASE("a length that is no number, and one that is too large") {
   CHECK(reader.next()->message == "{}");
 }
 
+TEST_CASE("a length that no message has is not waited for") {
+  FrameReader reader;
+  reader.add("Content-Length: 99999999999999\r\n\r\n" + framed("{}"));
+  CHECK(reader.next()->mistake == "a message of more than 1 GiB, which nobody sends");
+  CHECK(reader.next()->message == "{}");
+  reader.add("Content-Length: 18446744073709551615\r\n\r\n");
+  CHECK(reader.next()->mistake == "a message of more than 1 GiB, which nobody sends");
+  reader.add(framed("{\"a\":1}"));
+  CHECK(reader.next()->message == "{\"a\":1}");
+}
+
 TEST_CASE("a line without end is given up") {
   FrameReader reader;
   reader.add(std::string(kMaxHeaderBytes + 1, 'y'));
