@@ -17,7 +17,8 @@ std::string api_key();
 Status check_api_key();
 
 // `text` without the key and without any part of it of six characters or more: a text may have been
-// cut in the middle of it. Each is a `*`.
+// cut in the middle of it. So are those in another case, escaped as in a URL, or in base64 (a
+// shorter key whole). Each is a `*`.
 std::string without_key(std::string_view text);
 std::string without_key(std::string_view text, std::string_view key);
 

@@ -56,6 +56,14 @@ bool is_secret(std::string_view option) {
   return false;
 }
 
+// The same of a URL that an option's value is, or has in it: other services have other names.
+bool is_secret_of_url(std::string_view option) {
+  if (is_secret(option)) return true;
+  std::string name;
+  for (const char c : option) name += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  return name == "code" || name == "sk" || name.ends_with("key");
+}
+
 Failure secret(const std::string& what) {
   return {Fault::kUsage,
           what +
@@ -86,7 +94,7 @@ Status check_no_secret(const std::string& what, std::string value) {
       const std::string_view part = rest.substr(0, rest.find_first_of(kBetween));
       rest.remove_prefix(std::min(rest.size(), part.size() + 1));
       const std::size_t equals = part.find('=');
-      if (equals == std::string_view::npos || !is_secret(part.substr(0, equals))) continue;
+      if (equals == std::string_view::npos || !is_secret_of_url(part.substr(0, equals))) continue;
       return secret("a secret, `" + std::string(part.substr(0, equals)) + "`, in " + what);
     }
     auto plain = decoded(value);
@@ -105,6 +113,12 @@ Status read_options(std::string_view text, std::map<std::string, std::string>* o
       // Not shown: it may be the rest of a password with `&`.
       return Failure{Fault::kUsage,
                      "option " + std::to_string(number) + " of the address is not `name=value`",
+                     "--policy"};
+    }
+    if (pair.substr(0, equals).find('%') != std::string_view::npos) {
+      // Not shown: an escaped `=` may stand between a name and a secret.
+      return Failure{Fault::kUsage,
+                     "option " + std::to_string(number) + " of the address has `%` in its name",
                      "--policy"};
     }
     if (is_secret(pair.substr(0, equals))) {

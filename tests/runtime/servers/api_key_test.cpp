@@ -26,6 +26,20 @@ TEST_CASE("a key is not shown, whole or cut at either end") {
         "twice *, *");
 }
 
+TEST_CASE("a key is not shown escaped, in base64 or in another case") {
+  CHECK(without_key("no SK-PROJ-0123456789ABCDEFABCDEF-TAIL.", kKey) == "no *.");
+  CHECK(without_key("?k=sk%2Dproj%2d0123456789abcdefABCDEF%2Dtail&a", kKey) == "?k=*&a");
+  CHECK(without_key("?k=%73%6b%2d%70%72%6f%6a", kKey) == "?k=*");
+  // "", "x" and "xy" before it and "!" behind it; the letters of its neighbours stay.
+  CHECK(without_key("c2stcHJvai0wMTIzNDU2Nzg5YWJjZGVmQUJDREVGLXRhaWwh", kKey) == "*wh");
+  CHECK(without_key("eHNrLXByb2otMDEyMzQ1Njc4OWFiY2RlZkFCQ0RFRi10YWlsIQ==", kKey) == "eH*IQ==");
+  CHECK(without_key("eHlzay1wcm9qLTAxMjM0NTY3ODlhYmNkZWZBQkNERUYtdGFpbCE=", kKey) == "eHl*CE=");
+  CHECK(without_key("cut c2stcHJvai0wMTIz.", kKey) == "cut *.");
+  CHECK(without_key("user 50% of pro%zz", kKey) == "user 50% of pro%zz");
+  // As URLs have it: `-` and `_` for `+` and `/`.
+  CHECK(without_key("a fn5-fj8_P35-", "~~~~???~~") == "a *");
+}
+
 TEST_CASE("in bytes a key becomes as many stars, and so does a part of it") {
   const auto masked = [](std::string bytes) {
     mask_key({reinterpret_cast<std::uint8_t*>(bytes.data()), bytes.size()}, kKey);
