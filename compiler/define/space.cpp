@@ -396,6 +396,34 @@ struct SpaceReader {
   }
 };
 
+// What a search makes of a space is called by the space, an axis, the number of a level and of a
+// start, clutter by the point and the object that it copies; all of them name files. These parts
+// leave room for the numbers, an extension and what a file is called while it is written.
+constexpr std::size_t kMostOfPoint = 200;  // bytes, of the 255 that a file's name may have
+
+void check_names_of_points(Context& context, const Space& space) {
+  if (space.name.size() > plan::kMaxNameBytes) return;  // reported
+  for (const SpaceAxis& axis : space.axes) {
+    std::string longest;  // of the objects that are copied
+    if (axis.kind == SpaceAxisKind::kClutter) {
+      for (const ObjectId object : space.clutter) {
+        const std::string& name = context.model.objects[object].name;
+        if (name.size() > longest.size()) longest = name;
+      }
+    }
+    const std::size_t size =
+        space.name.size() + 1 + axis.name.size() + (longest.empty() ? 0 : 1 + longest.size());
+    if (size <= kMostOfPoint) continue;
+    context
+        .report(Situation::kTextTooLong, space.span,
+                "expected names of points of at most " + std::to_string(kMostOfPoint) +
+                    " bytes, which name files, found " + std::to_string(size) + ": the space's, `" +
+                    axis.name + (longest.empty() ? "`" : "` and `" + longest + "`"))
+        .help("a shorter name: that of the space begins the name of each of its points");
+    return;
+  }
+}
+
 }  // namespace
 
 void define_spaces(Context& context) {
@@ -425,6 +453,7 @@ void define_spaces(Context& context) {
                   "(..)`, `place source in disc 5cm`");
       }
     }
+    check_names_of_points(context, space);
     space.broken = space.broken || context.diagnostics.error_count() != errors;
     context.model.spaces.push_back(std::move(space));
   }
