@@ -64,6 +64,7 @@ std::string_view to_text(Held held) {
 
 Result<std::vector<FidelityRow>> measure_fidelity(const FidelityOptions& options) {
   Imported imported(options.import);
+  PROBE_TRY(imported.check());
   std::optional<Records> records;
   if (!options.records.empty()) {
     PROBE_ASSIGN(Records opened, Records::open(options.records));

@@ -1,13 +1,30 @@
 #include "runtime/libero/imported.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 
 #include "runtime/compile/files.h"
+#include "runtime/libero/suites.h"
 
 namespace probe::libero {
 
 std::string Imported::text_of(std::string_view suite) const {
   return folder_ + "/" + std::string(suite) + ".probe";
+}
+
+Status Imported::check() const {
+  std::error_code error;
+  const bool is_import = std::ranges::any_of(suites(), [&](const Suite& suite) {
+    return std::filesystem::is_regular_file(text_of(suite.folder), error);
+  });
+  if (is_import) return {};
+  return Failure{Fault::kUsage,
+                 fmt::format("is no folder that `libero import` made: it has no {}.probe, nor the "
+                             "text of another suite",
+                             suites().front().folder),
+                 folder_};
 }
 
 Result<bool> Imported::has(std::string_view suite, std::string_view task) {

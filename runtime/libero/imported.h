@@ -21,6 +21,8 @@ class Imported {
   // Compiled once; lives as long as this. Fails (kUsage, where = the text) where the folder lacks
   // it or it does not check.
   Result<const plan::Plan*> plan(std::string_view suite);
+  // Fails (kUsage) where the folder has no suite at all, so that it is no import.
+  Status check() const;
   // Whether the folder has the task: a suite of which no task could be imported has no text.
   Result<bool> has(std::string_view suite, std::string_view task);
   // Of a task by its name in the text.

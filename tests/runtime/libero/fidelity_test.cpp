@@ -14,6 +14,7 @@
 #include "runtime/scene/image.h"
 #include "tests/runtime/libero/imported.h"
 #include "tests/runtime/libero/small_folder.h"
+#include "tests/runtime/run/temporary_folder.h"
 
 namespace probe::libero {
 namespace {
@@ -55,6 +56,20 @@ std::string classes_json(double cup_mass, const std::string& site = "0.07 0.06 0
  "sites":[{"name":"drawer","pos":"0 0 0.1","quat":"0.7071068 0 0.7071068 0","size":")" +
          site + R"("}]}],"compiled_bodies":[)" +
          box("chest_1_drawer", 0.0256, 0.08, 0.08, 0.005, 0.06) + "]}}";
+}
+
+TEST_CASE("a folder that is no import is refused before anything is measured") {
+  const run::TemporaryFolder folder;
+  std::ofstream(folder / "other.probe") << "suite s {}\n";
+  for (const std::string& import : {folder / "", folder / "nowhere"}) {
+    FidelityOptions options;
+    options.import = import;
+    const auto rows = measure_fidelity(options);
+    REQUIRE(!rows.ok());
+    CHECK(rows.failure().code == Fault::kUsage);
+    CHECK(rows.failure().where == import);
+    CHECK(rows.failure().message.starts_with("is no folder that `libero import` made"));
+  }
 }
 
 FidelityOptions small_options(const test::SmallFolder& folder) {
@@ -386,7 +401,8 @@ TEST_CASE("folders that are no import, no LIBERO and no records are refused by n
   CHECK(measure_fidelity(options).failure().message ==
         "no LIBERO folder: there is no `bddl_files`");
   options.original = folder.root.string();
-  options.import = (folder.root / "assets").string();
+  folder.write("other/libero_goal.probe", "");
+  options.import = (folder.root / "other").string();
   const auto elsewhere = measure_fidelity(options);
   REQUIRE(elsewhere.ok());
   CHECK(row_of(*elsewhere, "starts").others ==
@@ -439,6 +455,7 @@ TEST_CASE(
   FidelityOptions options = small_options(folder);
   // A suite of which no task was imported has no text.
   fs::remove(folder.root / "out/libero_90.probe");
+  folder.write("out/libero_goal.probe", "");
   const auto none = measure_fidelity(options);
   REQUIRE_FALSE(none.ok());
   CHECK(none.failure().message == "the import has none of the recorded tasks");
