@@ -9,6 +9,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,8 +18,9 @@
 
 namespace probe {
 
+// Usual ones: `--allow-large` (runtime/base/large.h) multiplies each.
 struct ApartLimits {
-  std::size_t memory = std::size_t{2} << 30;  // bytes of address space beyond this process' own
+  std::size_t memory = std::size_t{1} << 30;  // bytes of address space beyond this process' own
   std::size_t answer = std::size_t{1} << 30;  // bytes
   int cpu_s = 10;                             // seconds of computing
   int clock_s = 120;                          // seconds on the clock
@@ -47,5 +50,26 @@ class Answer {
 // of computing". Exceptions end the process. `work` sees this process' memory, not its files.
 Result<Answer> run_apart(const std::function<bool(const AnswerWriter&)>& work,
                          const ApartLimits& limits = {});
+
+// A process of its own that goes on writing as it is read, so that what it has to say need not fit
+// anywhere. The seconds are of what it does between two pieces that it writes. Ended with this.
+class ApartStream {
+ public:
+  // Fails (kIo, no place) where no process can be started.
+  static Result<std::unique_ptr<ApartStream>> start(
+      const std::function<bool(const AnswerWriter&)>& work, const ApartLimits& limits = {});
+  ~ApartStream();
+  ApartStream(const ApartStream&) = delete;
+  ApartStream& operator=(const ApartStream&) = delete;
+
+  // The next bytes, all of them. Fails as run_apart does, and where the process ended before.
+  Status read(std::span<char> bytes);
+
+ private:
+  ApartStream(int pipe, int child, const ApartLimits& limits)
+      : pipe_(pipe), child_(child), limits_(limits) {}
+  int pipe_, child_;  // negative: closed, waited for
+  ApartLimits limits_;
+};
 
 }  // namespace probe

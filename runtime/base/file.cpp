@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "runtime/base/io_failure.h"
+#include "runtime/base/large.h"
 
 namespace probe {
 namespace {
@@ -164,18 +165,19 @@ Result<std::string> read_file(const std::string& path, const ReadRules& rules) {
   const auto refuse = [&](std::string message) {
     return Failure{rules.code, std::move(message), path};
   };
+  // Of a file whose beginning is enough nothing is refused.
+  const std::size_t most = rules.only_begin ? rules.most : allowed(rules.most);
   PROBE_ASSIGN(const Descriptor file, open_regular(path, rules.code));
   struct stat about {};
   if (::fstat(file.get(), &about) != 0)
     return refuse(std::string("cannot be read: ") + std::strerror(errno));
   const auto too_large = [&] {
-    return refuse("has more than the " + bytes_text(rules.most) + " that are read");
+    return refuse("has more than the " + bytes_text(most) + " that are read" + large_hint());
   };
   const auto stated = static_cast<std::uintmax_t>(about.st_size);
-  if (stated > rules.most && !rules.only_begin) return too_large();
+  if (stated > most && !rules.only_begin) return too_large();
   // One byte more than it says, which ends the reading at once; /proc says 0 of everything.
-  std::string bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(stated, rules.most)) + 1,
-                    '\0');
+  std::string bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(stated, most)) + 1, '\0');
   std::size_t size = 0;
   for (;;) {
     if (size == bytes.size()) bytes.resize(2 * size + 4096);
@@ -184,9 +186,9 @@ Result<std::string> read_file(const std::string& path, const ReadRules& rules) {
     if (got < 0) return refuse(std::string("cannot be read: ") + std::strerror(errno));
     if (got == 0) break;
     size += static_cast<std::size_t>(got);
-    if (size <= rules.most) continue;
+    if (size <= most) continue;
     if (!rules.only_begin) return too_large();
-    size = rules.most;
+    size = most;
     break;
   }
   bytes.resize(size);

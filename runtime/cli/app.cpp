@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "compiler/diag/diagnostic.h"
+#include "runtime/base/large.h"
 #include "runtime/base/say.h"
 
 namespace probe::cli {
@@ -65,6 +66,8 @@ void add_text_verbs(Verb program, int& exit, PhraseDrawing draw_phrases) {
 int run_program(int argc, char** argv, AddVerbs add_verbs, bool is_whole) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an answer of write()
   CommandLine line(kAbout, kExample, version());
+  line.program().add_flag("--allow-large", allow_large,
+                          "files of others may be larger and take longer to read");
   int exit = kFine;
   add_verbs(line.program(), exit);
 

@@ -22,8 +22,10 @@ int report_unknown(const CLI::App& app, const CLI::ParseError& error, std::span<
   const CLI::App* verb = &app;
   for (const CLI::App* chosen : app.get_subcommands()) verb = chosen;
   std::vector<std::string> names;
-  for (const CLI::Option* option : verb->get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* of : {verb, &app}) {  // the program's stand behind a verb, too
+    for (const CLI::Option* option : of->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
   }
   const std::vector<std::string_view> known(names.begin(), names.end());
   say("vlaprobe: {}\n", error.what());
@@ -157,6 +159,11 @@ Option Verb::add_flag(const std::string& names, bool& value, const std::string& 
   return Option(app_->add_flag(names, value, about));
 }
 
+Option Verb::add_flag(const std::string& names, std::function<void()> given,
+                      const std::string& about) {
+  return Option(app_->add_flag_callback(names, std::move(given), about));
+}
+
 void Verb::refuse_empty_values() {
   for (CLI::Option* option : app_->get_options()) {
     if (option->get_expected_max() == 0) continue;
@@ -175,6 +182,7 @@ CommandLine::CommandLine(const std::string& about, const std::string& footer,
     : app_(std::make_unique<CLI::App>(about)) {
   app_->footer(footer);
   app_->require_subcommand(0, 1);
+  app_->fallthrough();  // as its verbs then do
   app_->set_version_flag("--version", version);
   app_->formatter(std::make_shared<SaidFormatter>());  // verbs have that of the program
   app_->get_formatter()->column_width(28);

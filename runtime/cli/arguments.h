@@ -76,6 +76,8 @@ class Verb {
   Option add_option(const std::string& names, std::vector<std::string>& value,
                     const std::string& about);
   Option add_flag(const std::string& names, bool& value, const std::string& about);
+  // `given` runs before the callback of any verb.
+  Option add_flag(const std::string& names, std::function<void()> given, const std::string& about);
   // An option that is given with an empty text, as a shell does with an unset variable, is refused:
   // it must not mean the default. For the options that were added before.
   void refuse_empty_values();
@@ -102,6 +104,7 @@ class CommandLine {
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
+  // Options that it has may stand behind a verb, too.
   Verb program();
   // Names of the verbs, in the order in which they were added.
   std::vector<std::string> verbs() const;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "runtime/base/file.h"
+#include "runtime/base/large.h"
 #include "runtime/libero/zip.h"
 #include "runtime/wire/pickle_arrays.h"
 
@@ -39,7 +40,7 @@ Result<StateRows> read_rows(const std::string& path) {
                                           bytes.size());
   const auto pickle = wire::read_pickle(raw, wire::array_globals());
   if (!pickle) return wrong(pickle.failure().message);
-  const auto array = wire::read_array(*pickle, pickle->top(), kMostBytes);
+  const auto array = wire::read_array(*pickle, pickle->top(), allowed(kMostBytes));
   if (!array) return wrong(array.failure().message);
   if (array->dtype != "<f8" || array->shape.size() != 2) {
     return wrong(fmt::format("expected rows of float64, found {} dimension{} of `{}`",

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <memory>
 
+#include "runtime/base/large.h"
+
 namespace probe::libero {
 namespace {
 
@@ -101,9 +103,9 @@ Result<std::optional<std::string>> find_zip_member(std::span<const std::uint8_t>
   if (unzGetCurrentFileInfo64(zip.get(), &info, nullptr, 0, nullptr, 0, nullptr, 0) != UNZ_OK)
     return wrong("the directory of the zip archive cannot be read");
   if ((info.flag & 1) != 0) return wrong(fmt::format("`{}` is encrypted", ending));
-  if (info.uncompressed_size > most) {
-    return wrong(fmt::format("`{}` has {} bytes unpacked, at most {} are read", ending,
-                             info.uncompressed_size, most));
+  if (info.uncompressed_size > allowed(most)) {
+    return wrong(fmt::format("`{}` has {} bytes unpacked, at most {} are read{}", ending,
+                             info.uncompressed_size, allowed(most), large_hint()));
   }
   if (unzOpenCurrentFile(zip.get()) != UNZ_OK)
     return wrong(fmt::format("`{}` is packed in a way that is not read", ending));

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "runtime/base/file.h"
+#include "runtime/base/large.h"
 #include "runtime/scene/hull.h"
 #include "runtime/scene/mesh_import.h"
 
@@ -38,7 +39,7 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
   TriangleSoup soup;
   std::string line, word;
   for (int number = 1; std::getline(file, line); ++number) {
-    const auto fail = [&](const char* what) {
+    const auto fail = [&](const std::string& what) {
       return Failure{Fault::kAsset, what, path + ":" + std::to_string(number)};
     };
     std::istringstream words(line);
@@ -69,8 +70,9 @@ Result<TriangleSoup> load_obj_triangles(const std::string& path, const Vec3& sca
         loop.push_back(static_cast<std::uint32_t>(index - 1));
       }
       if (loop.size() < 3) return fail("a face has fewer than three corners");
-      if (soup.indices.size() / 3 + loop.size() - 2 > kLimits.triangles) {
-        return fail("more than 1000000 triangles");
+      if (soup.indices.size() / 3 + loop.size() - 2 > allowed(kLimits.triangles)) {
+        return fail("more than " + std::to_string(allowed(kLimits.triangles)) + " triangles" +
+                    large_hint());
       }
       for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
         soup.indices.insert(soup.indices.end(), {loop[0], loop[i], loop[i + 1]});

@@ -18,6 +18,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/io_failure.h"
+#include "runtime/base/large.h"
 
 namespace probe::scene {
 namespace {
@@ -113,10 +114,11 @@ Result<ImageSize> image_size(std::span<const std::byte> encoded, const std::stri
     return asset_failure(std::string("cannot read the image (") + stbi_failure_reason() + ")",
                          where);
   }
-  if (size.width > kMaxImageSide || size.height > kMaxImageSide) {
+  const int most = allowed(kMaxImageSide);
+  if (size.width > most || size.height > most) {
     return asset_failure("the image has " + std::to_string(size.width) + " x " +
                              std::to_string(size.height) + " pixels, at most " +
-                             std::to_string(kMaxImageSide) + " a side are read",
+                             std::to_string(most) + " a side are read" + large_hint(),
                          where);
   }
   return size;

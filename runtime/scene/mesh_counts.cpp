@@ -13,6 +13,7 @@
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
 #include "runtime/base/json.h"
+#include "runtime/base/large.h"
 #include "runtime/scene/mesh_references.h"
 
 namespace probe::scene {
@@ -26,7 +27,8 @@ Failure no_mesh(const std::string& what) { return {Fault::kAsset, what, ""}; }
 Status check_field(const Json& entry, const char* table, std::size_t index, const char* field) {
   const Json* found = entry.find(field);
   if (found == nullptr) return {};
-  if (found->is_number_unsigned() && found->get<std::uint64_t>() <= kMaxMeshBytes) return {};
+  if (found->is_number_unsigned() && found->get<std::uint64_t>() <= allowed(kMaxMeshBytes))
+    return {};
   return no_mesh(std::string("`") + field + "` of `" + table + "` " + std::to_string(index) +
                  " is " + found->dump() + ", not a number that such a file can have");
 }
@@ -110,7 +112,7 @@ std::optional<std::size_t> whole(std::string_view text) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc() || end != text.data() + text.size() ||
-      value > kMaxMeshBytes)
+      value > allowed(kMaxMeshBytes))
     return std::nullopt;
   return value;
 }

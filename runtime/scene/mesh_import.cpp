@@ -23,6 +23,7 @@
 #include "runtime/base/apart.h"
 #include "runtime/base/asset_path.h"
 #include "runtime/base/file.h"
+#include "runtime/base/large.h"
 #include "runtime/base/libm_binding.h"
 #include "runtime/base/paths.h"
 #include "runtime/scene/color.h"
@@ -41,7 +42,8 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenNormals | aiPro
                             aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices |
                             aiProcess_SortByPType | aiProcess_ImproveCacheLocality;
 
-// What a mesh may cost; one of a million triangles or with a picture of 8192 x 8192 takes a fifth.
+// What a mesh may cost. These are addresses: a million triangles, of which a STL file keeps every
+// corner by itself at first, take more than 1.5 GiB of them and 0.93 GB of memory.
 constexpr ApartLimits kReaderLimits{
     .memory = std::size_t{2} << 30, .answer = std::size_t{768} << 20, .clock_s = 120};
 
@@ -266,9 +268,11 @@ class Import {
         if (limits_.keep_encoded) encoded.bytes.assign(bytes, embedded->mWidth);
         return decode({reinterpret_cast<const std::byte*>(bytes), embedded->mWidth}, where);
       }
-      if (embedded->mWidth > kMaxImageSide || embedded->mHeight > kMaxImageSide) {
+      const auto most = static_cast<unsigned>(allowed(kMaxImageSide));
+      if (embedded->mWidth > most || embedded->mHeight > most) {
         return asset_failure(
-            "the texture has more than " + std::to_string(kMaxImageSide) + " pixels a side", where);
+            "the texture has more than " + std::to_string(most) + " pixels a side" + large_hint(),
+            where);
       }
       Texture texture{static_cast<int>(embedded->mWidth), static_cast<int>(embedded->mHeight), {}};
       const std::size_t count = std::size_t{embedded->mWidth} * embedded->mHeight;
@@ -293,10 +297,11 @@ class Import {
   Result<Texture> decode(std::span<const std::byte> bytes, const std::string& where) {
     PROBE_ASSIGN(const ImageSize size, image_size(bytes, where));
     texels_ += static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
-    if (texels_ > kMaxTexels) {
-      return asset_failure(
-          "the mesh's pictures have more than " + std::to_string(kMaxTexels) + " pixels in all",
-          where);
+    if (texels_ > allowed(kMaxTexels)) {
+      return asset_failure("the mesh's pictures have more than " +
+                               std::to_string(allowed(kMaxTexels)) + " pixels in all" +
+                               large_hint(),
+                           where);
     }
     return decode_image(bytes, where);
   }
@@ -327,9 +332,10 @@ class Import {
       if ((source.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0 || source.mNumFaces == 0)
         continue;
       triangles += source.mNumFaces;
-      if (triangles > limits_.triangles) {
-        return asset_failure("more than " + std::to_string(limits_.triangles) + " triangles",
-                             path_);
+      if (triangles > allowed(limits_.triangles)) {
+        return asset_failure(
+            "more than " + std::to_string(allowed(limits_.triangles)) + " triangles" + large_hint(),
+            path_);
       }
       const bool has_uv = source.HasTextureCoords(0);
       const auto [place, fresh] = part_of.try_emplace(
@@ -600,8 +606,10 @@ Result<std::shared_ptr<const Mesh>> load_mesh(const std::string& path, const Vec
     return asset_failure("meshes are read from glb, gltf, obj, dae and stl files", path);
   }
   std::error_code error;
-  if (fs::file_size(path, error) > kMaxMeshBytes || error) {
-    return asset_failure("larger than 512 MB, the most that is read", path);
+  if (fs::file_size(path, error) > allowed(kMaxMeshBytes) || error) {
+    return asset_failure("larger than " + std::to_string(allowed(kMaxMeshBytes) >> 20) +
+                             " MiB, the most that is read" + large_hint(),
+                         path);
   }
   // assimp catches its own exceptions, except that of an exhausted memory.
   const auto work = [&](const AnswerWriter& write) {

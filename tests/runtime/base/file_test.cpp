@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "runtime/base/large.h"
+
 namespace probe {
 namespace {
 
@@ -99,11 +101,11 @@ TEST_CASE("a file with more bytes than its reader wants is refused by its size")
   CHECK(read_file(folder.file("a"), {.most = 5}).value() == "12345");
   const auto read = read_file(folder.file("a"), {.most = 4});
   REQUIRE_FALSE(read.ok());
-  CHECK(read.failure().message == "has more than the 4 bytes that are read");
+  CHECK(read.failure().message == "has more than the 4 bytes that are read" + large_hint());
   // A hole takes no memory.
   fs::resize_file(folder.file("a"), std::uintmax_t{1} << 40);
   CHECK(read_file(folder.file("a"), {.most = std::size_t{3} << 20}).failure().message ==
-        "has more than the 3 MiB that are read");
+        "has more than the 3 MiB that are read" + large_hint());
   // The kernel says 0 bytes of its own files and gives what it has.
   CHECK(read_file("/proc/self/status")->starts_with("Name:"));
   CHECK_FALSE(read_file("/proc/self/status", {.most = 10}).ok());

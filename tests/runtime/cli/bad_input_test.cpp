@@ -195,6 +195,29 @@ TEST_CASE("a name that would repaint the terminal is shown without its escapes")
   }
 }
 
+TEST_CASE(
+    "a file that is larger than is read may be read, where the user says so before or behind the "
+    "verb") {
+  Sandbox box;
+  write_file(box / "large.urdf", "no robot");
+  fs::resize_file(box / "large.urdf", 17 << 20);
+  const std::string pack = "assets pack large.urdf -o out";
+  const Outcome refused = box.vlaprobe(pack);
+  CHECK(refused.exit == 2);
+  CHECK_MESSAGE(
+      contains(refused.err,
+               "has more than the 16 MiB that are read; `--allow-large` allows 8 times as much"),
+      refused.err);
+  for (const std::string& line : {"--allow-large " + pack, pack + " --allow-large"}) {
+    const Outcome read = box.vlaprobe(line);
+    CHECK_MESSAGE(read.exit == 2, read.err);  // for what is in it
+    CHECK_FALSE_MESSAGE(contains(read.err, "MiB"), read.err);
+  }
+  CHECK(box.vlaprobe("explain P0304 --allow-large").exit == 0);
+  CHECK(contains(box.vlaprobe("explain P0304 --alow-large").err, "did you mean `--allow-large`?"));
+  CHECK(contains(box.vlaprobe("--help").out, "--allow-large"));
+}
+
 TEST_CASE("results of a folder without a run say so") {
   Sandbox box;
   const Outcome outcome = box.vlaprobe("results nowhere");
