@@ -10,10 +10,14 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
+#include "runtime/base/apart.h"
+#include "runtime/base/bytes.h"
 #include "runtime/show/yuv_frame.h"
 
 namespace probe::show {
@@ -186,10 +190,11 @@ struct OpenVideo {
 
 constexpr std::int64_t kMostPixels = 64'000'000;  // of a picture that is read
 
-class DecodedClip final : public ClipReader {
+// Decodes; in the process of its own.
+class DecodedClip {
  public:
   explicit DecodedClip(std::string path) : path_(std::move(path)) {}
-  ~DecodedClip() override {
+  ~DecodedClip() {
     sws_freeContext(scaler_);
     av_frame_free(&frame_);
     avcodec_free_context(&codec_);
@@ -230,10 +235,10 @@ class DecodedClip final : public ClipReader {
     return {};
   }
 
-  int width() const override { return codec_->width; }
-  int height() const override { return codec_->height; }
+  int width() const { return codec_->width; }
+  int height() const { return codec_->height; }
 
-  Result<std::span<const std::uint8_t>> next() override {
+  Result<std::span<const std::uint8_t>> next() {
     for (;;) {
       int code = avcodec_receive_frame(codec_, frame_);
       if (code == AVERROR_EOF) return std::span<const std::uint8_t>();
@@ -283,37 +288,115 @@ class DecodedClip final : public ClipReader {
   std::vector<std::uint8_t> rgb_;
 };
 
-}  // namespace
+// ---- what the two processes say to each other: one of these, then what belongs to it
 
-std::size_t Clip::bytes() const {
-  std::size_t sum = 0;
-  for (const Packet& packet : packets) sum += packet.bytes.size();
-  return sum;
+enum class Said : std::uint8_t { kSize, kPicture, kEnd, kFailure };
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Result<std::unique_ptr<ClipEncoder>> ClipEncoder::create(const ClipFormat& format) {
-  av_log_set_level(AV_LOG_ERROR);
-  auto encoder = std::make_unique<X264Clip>(format);
-  PROBE_TRY(encoder->begin());
-  return std::unique_ptr<ClipEncoder>(std::move(encoder));
+// The failure's message behind its size.
+bool say(const Failure& failure, const AnswerWriter& write) {
+  ByteWriter out;
+  out.u8(static_cast<std::uint8_t>(Said::kFailure));
+  out.text(failure.message);
+  return write(as_text(out.bytes()));
 }
 
-Result<std::unique_ptr<ClipJoiner>> ClipJoiner::create(const std::string& path, const Clip& first) {
-  auto joiner = std::make_unique<Mp4Joiner>(path);
-  PROBE_TRY(joiner->begin(first));
-  return std::unique_ptr<ClipJoiner>(std::move(joiner));
-}
-
-std::string video_library() { return "libavcodec " + std::to_string(avcodec_version()); }
-
-Result<std::unique_ptr<ClipReader>> ClipReader::create(const std::string& path) {
+bool decode_all(const std::string& path, const AnswerWriter& write) {
   av_log_set_level(AV_LOG_QUIET);  // what is wrong with a file is told by its failure
-  auto reader = std::make_unique<DecodedClip>(path);
-  PROBE_TRY(reader->begin());
-  return std::unique_ptr<ClipReader>(std::move(reader));
+  DecodedClip clip(path);
+  if (const Status begun = clip.begin(); !begun) return say(begun.failure(), write);
+  ByteWriter size;
+  size.u8(static_cast<std::uint8_t>(Said::kSize));
+  size.u32(static_cast<std::uint32_t>(clip.width()));
+  size.u32(static_cast<std::uint32_t>(clip.height()));
+  if (!write(as_text(size.bytes()))) return false;
+  for (;;) {
+    const auto picture = clip.next();
+    if (!picture) return say(picture.failure(), write);
+    const char kind = static_cast<char>(picture->empty() ? Said::kEnd : Said::kPicture);
+    if (!write({&kind, 1})) return false;
+    if (picture->empty()) return true;
+    if (!write(as_text(std::as_bytes(*picture)))) return false;
+  }
 }
 
-Result<VideoFacts> read_video_facts(const std::string& path) {
+// A video that a process of its own decodes.
+class ClipApart final : public ClipReader {
+ public:
+  explicit ClipApart(std::string path) : path_(std::move(path)) {}
+
+  Status begin() {
+    auto stream =
+        ApartStream::start([this](const AnswerWriter& write) { return decode_all(path_, write); });
+    if (!stream) return failed(stream.failure().message);
+    stream_ = std::move(*stream);
+    PROBE_ASSIGN(const Said said, hear());
+    if (said != Said::kSize) return failed("makes its reader give half an answer");
+    std::array<char, 2 * sizeof(std::uint32_t)> bytes{};
+    PROBE_TRY(read(bytes));
+    ByteReader in(std::as_bytes(std::span(bytes)));
+    const std::size_t width = in.u32(), height = in.u32();
+    constexpr std::size_t kMostSide = 65536, kMostBytes = std::size_t{1} << 30;
+    if (width == 0 || height == 0 || width > kMostSide || height > kMostSide ||
+        3 * width * height > kMostBytes)
+      return failed("has pictures of " + std::to_string(width) + " x " + std::to_string(height) +
+                    " pixels");
+    width_ = static_cast<int>(width);
+    height_ = static_cast<int>(height);
+    rgb_.resize(3 * width * height);
+    return {};
+  }
+
+  int width() const override { return width_; }
+  int height() const override { return height_; }
+
+  Result<std::span<const std::uint8_t>> next() override {
+    if (has_ended_) return std::span<const std::uint8_t>();
+    PROBE_ASSIGN(const Said said, hear());
+    if (said == Said::kEnd) {
+      has_ended_ = true;
+      return std::span<const std::uint8_t>();
+    }
+    if (said != Said::kPicture) return failed("makes its reader give half an answer");
+    PROBE_TRY(read({reinterpret_cast<char*>(rgb_.data()), rgb_.size()}));
+    return std::span<const std::uint8_t>(rgb_);
+  }
+
+ private:
+  Failure failed(std::string what) const { return {Fault::kVideo, std::move(what), path_}; }
+
+  Status read(std::span<char> bytes) {
+    const Status status = stream_->read(bytes);
+    return status ? Status() : Status(failed(status.failure().message));
+  }
+
+  // What comes next; its failure, where that is one.
+  Result<Said> hear() {
+    std::array<char, 1> kind{};
+    PROBE_TRY(read(kind));
+    const auto said = static_cast<Said>(kind[0]);
+    if (said != Said::kFailure) return said;
+    std::array<char, sizeof(std::uint32_t)> size{};
+    PROBE_TRY(read(size));
+    constexpr std::uint32_t kMostText = 65536;
+    std::string message(std::min(ByteReader(std::as_bytes(std::span(size))).u32(), kMostText),
+                        '\0');
+    PROBE_TRY(read(message));
+    return failed(std::move(message));
+  }
+
+  std::string path_;
+  std::unique_ptr<ApartStream> stream_;
+  int width_ = 0, height_ = 0;
+  std::vector<std::uint8_t> rgb_;
+  bool has_ended_ = false;
+};
+
+// In the process of its own.
+Result<VideoFacts> facts_of(const std::string& path) {
   av_log_set_level(AV_LOG_QUIET);  // as above
   OpenVideo video;
   int code = avformat_open_input(&video.format, path.c_str(), nullptr, nullptr);
@@ -340,6 +423,68 @@ Result<VideoFacts> read_video_facts(const std::string& path) {
     av_packet_unref(video.packet);
   }
   if (code != AVERROR_EOF) return av_failure("cannot be read to its end", code, path);
+  return facts;
+}
+
+}  // namespace
+
+std::size_t Clip::bytes() const {
+  std::size_t sum = 0;
+  for (const Packet& packet : packets) sum += packet.bytes.size();
+  return sum;
+}
+
+Result<std::unique_ptr<ClipEncoder>> ClipEncoder::create(const ClipFormat& format) {
+  av_log_set_level(AV_LOG_ERROR);
+  auto encoder = std::make_unique<X264Clip>(format);
+  PROBE_TRY(encoder->begin());
+  return std::unique_ptr<ClipEncoder>(std::move(encoder));
+}
+
+Result<std::unique_ptr<ClipJoiner>> ClipJoiner::create(const std::string& path, const Clip& first) {
+  auto joiner = std::make_unique<Mp4Joiner>(path);
+  PROBE_TRY(joiner->begin(first));
+  return std::unique_ptr<ClipJoiner>(std::move(joiner));
+}
+
+std::string video_library() { return "libavcodec " + std::to_string(avcodec_version()); }
+
+Result<std::unique_ptr<ClipReader>> ClipReader::create(const std::string& path) {
+  auto reader = std::make_unique<ClipApart>(path);
+  PROBE_TRY(reader->begin());
+  return std::unique_ptr<ClipReader>(std::move(reader));
+}
+
+Result<VideoFacts> read_video_facts(const std::string& path) {
+  const auto answer = run_apart([&](const AnswerWriter& write) {
+    const auto facts = facts_of(path);
+    if (!facts) return say(facts.failure(), write);
+    ByteWriter out;
+    out.u8(static_cast<std::uint8_t>(Said::kSize));
+    out.text(facts->codec);
+    out.u32(static_cast<std::uint32_t>(facts->width));
+    out.u32(static_cast<std::uint32_t>(facts->height));
+    out.f64(facts->frames_per_second);
+    out.u64(static_cast<std::uint64_t>(facts->frames));
+    out.u8(facts->is_even ? 1 : 0);
+    return write(as_text(out.bytes()));
+  });
+  const auto failed = [&](std::string what) {
+    return Failure{Fault::kVideo, std::move(what), path};
+  };
+  if (!answer) return failed(answer.failure().message);
+  ByteReader in(std::as_bytes(std::span(answer->bytes())));
+  const auto said = static_cast<Said>(in.u8());
+  VideoFacts facts;
+  std::string text = in.text();
+  if (said == Said::kFailure && in.ok()) return failed(std::move(text));
+  facts.codec = std::move(text);
+  facts.width = static_cast<int>(in.u32());
+  facts.height = static_cast<int>(in.u32());
+  facts.frames_per_second = in.f64();
+  facts.frames = static_cast<std::int64_t>(in.u64());
+  facts.is_even = in.u8() == 1;
+  if (!in.ok()) return failed("makes its reader give half an answer");
   return facts;
 }
 

@@ -68,7 +68,8 @@ struct VideoFacts {
 };
 Result<VideoFacts> read_video_facts(const std::string& path);
 
-// A video file's pictures, one after the other. Fails with kVideo naming the path.
+// A video file's pictures, one after the other, decoded in a process of its own
+// (runtime/base/apart.h), as read_video_facts looks in one. Fails with kVideo naming the path.
 class ClipReader {
  public:
   static Result<std::unique_ptr<ClipReader>> create(const std::string& path);

@@ -102,11 +102,10 @@ std::vector<Sha256> picture_hashes(Findings& findings, const NamedDemonstration&
   return hashes;
 }
 
-void expect_pictures(Findings& findings, const std::vector<std::vector<std::uint8_t>>& rgb,
+void expect_pictures(Findings& findings, std::span<const std::span<const std::uint8_t>> rgb,
                      std::span<const Sha256> wanted, std::size_t step, const std::string& at) {
   if (step >= wanted.size()) return;
-  const std::vector<std::span<const std::uint8_t>> all(rgb.begin(), rgb.end());
-  findings.expect(hash_of(all) == wanted[step], at,
+  findings.expect(hash_of(rgb) == wanted[step], at,
                   "its pictures are not those that the policy saw");
 }
 

@@ -57,7 +57,7 @@ void expect_state(Findings& findings, std::span<const double> state, const Pose&
 std::vector<Sha256> picture_hashes(Findings& findings, const NamedDemonstration& named,
                                    PicturesAgain* again);
 // Whether the pictures of a step, one a camera, are those; `wanted` of picture_hashes().
-void expect_pictures(Findings& findings, const std::vector<std::vector<std::uint8_t>>& rgb,
+void expect_pictures(Findings& findings, std::span<const std::span<const std::uint8_t>> rgb,
                      std::span<const Sha256> wanted, std::size_t step, const std::string& at);
 
 // Single numbers of 32 bits, or double ones.

@@ -222,7 +222,8 @@ class RldsCheck {
       }
       rgb.push_back(std::move(pixels));
     }
-    expect_pictures(findings_, rgb, wanted, i, at);
+    const std::vector<std::span<const std::uint8_t>> all(rgb.begin(), rgb.end());
+    expect_pictures(findings_, all, wanted, i, at);
   }
 
   std::string dir_;

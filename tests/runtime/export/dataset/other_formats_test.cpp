@@ -368,6 +368,21 @@ TEST_CASE("an RLDS dataset that was changed does not pass its check") {
   }
 }
 
+TEST_CASE("a robomimic file that makes HDF5 crash is a finding") {
+  const run::TemporaryFolder folder;
+  make_run(small_table(), folder / "run");
+  const std::string out = folder / "set", path = out + "/demos.hdf5";
+  must_export(folder / "run", out, Format::kRobomimic, dataset_options());
+  std::string bytes = read_file(path).value();
+  // The second text of a heap, whose size stands in the 8 bytes before it.
+  const std::size_t first = bytes.find("{\"lang\""), second = bytes.find("{\"lang\"", first + 1);
+  REQUIRE(second != std::string::npos);
+  bytes[second - 4] = 1;  // 4 GiB more
+  std::ofstream(path, std::ios::binary) << bytes;
+  check_told(out, "demo_1 (");
+  check_told(out, "makes its reader crash (SIGSEGV)");
+}
+
 TEST_CASE("a robomimic file that was changed does not pass its check") {
   if (!has_h5py()) return;
   const run::TemporaryFolder folder;
