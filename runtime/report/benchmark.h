@@ -195,6 +195,7 @@ struct Benchmark {
   // As stored: of all episodes, or of many some of each task, see LoadOptions::most_rows.
   std::vector<store::ResultRow> rows;
   std::vector<Note> notes;
+  std::size_t unborne = 0;  // rows that their traces do not bear: in no number, named in the notes
   std::vector<plan::Plan> plan_files;  // by plan
 
   int find_metric(std::string_view name) const;

@@ -209,6 +209,7 @@ Result<Gate> gate(const Benchmark& benchmark, const GateOptions& options) {
   out.before = benchmark.policies[kBefore].label;
   out.lower_is_better = benchmark.metrics[static_cast<std::size_t>(metric)].good < 0;
   note_runs(benchmark, out);
+  out.unborne = benchmark.unborne;
   for (const Measured& one : measured) {
     if (one.row.verdict != Verdict::kWorse && one.p_at_worst <= options.error) {
       return Failure{Fault::kUsage,

@@ -39,6 +39,7 @@ struct Gate {
   bool lower_is_better = false;     // of the metric: a drop is then a rise
   std::vector<GateRow> rows;        // all tasks first
   std::vector<std::string> notes;   // partial runs, rows that were left out
+  std::size_t unborne = 0;          // rows that their traces do not bear
   bool is_worse() const;            // of all tasks, or of a category that is held to it
   bool is_decided() const;          // no row that is held to it is undecided
 };

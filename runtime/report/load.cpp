@@ -156,6 +156,7 @@ class FolderLoader {
     if (!options_.prove) return store::for_each_row(dir, visit);
     PROBE_ASSIGN(const store::ProvenRun proven, store::for_each_proven_row(dir, visit));
     const auto& refused = proven.refused;
+    benchmark_.unborne += refused.size();
     for (std::size_t i = 0; i < refused.size() && i < kTold; ++i) {
       note("bad", printable(refused[i], kLongestText));
     }

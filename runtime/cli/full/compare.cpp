@@ -28,18 +28,20 @@ int compare_rates(const CompareArguments& arguments) {
   if (!text) return report(text.failure());
   auto table = report::parse_rate_table(*text, arguments.with);
   if (!table) return report(table.failure());
+  int exit = kFine;
   if (!arguments.dirs.empty()) {
     const auto benchmark = report::load(arguments.dirs, {.prove = true});
     if (!benchmark) return report(benchmark.failure());
     say_notes(benchmark->notes);
     for (const std::string& left_out : report::add_runs(*table, *benchmark)) say("{}\n", left_out);
+    exit = exit_of(*benchmark);
   }
   if (arguments.json) {
     put("{}\n", report::agreement_json(*table).dump(1));
   } else {
     put_words("{}", report::agreement_text(*table));
   }
-  return kFine;
+  return exit;
 }
 
 int compare_two_searches(const CompareArguments& arguments) {
@@ -88,7 +90,7 @@ int compare_verb(const CompareArguments& arguments) {
   } else {
     put_words("{}", report::to_text(compared->benchmark, compared->comparison));
   }
-  return kFine;
+  return exit_of(compared->benchmark);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ int gate_verb(GateArguments& arguments) {
     put_words("{}", to_text(*gate));
   }
   if (gate->is_worse() || (arguments.decided && !gate->is_decided())) return kUser;
-  return kFine;
+  return gate->unborne == 0 ? kFine : kOutside;
 }
 
 }  // namespace
@@ -58,7 +58,9 @@ void add_gate(Verb app, int& exit) {
   Verb verb = app.add_subcommand(
       "gate", "may this run's policy take the place of that one's: exit 1 only for a drop that the "
               "data show, 2 where nothing can be said");
-  verb.footer("example: vlaprobe gate runs/new --against runs/old --allow 2% --junit gate.xml");
+  verb.footer(
+      "exit 2 as well where rows were left out, because their traces do not show them\n"
+      "example: vlaprobe gate runs/new --against runs/old --allow 2% --junit gate.xml");
   verb.add_option("NEW", arguments->now, "results folder").required();
   verb.add_option("--against", arguments->before, "results folder").required();
   verb.add_option("--allow", arguments->allow, "how many more episodes may fail (default: 0%)");

@@ -64,12 +64,16 @@ Status write_search_report(const ReportArguments& arguments) {
   return {};
 }
 
-Status write_report(const ReportArguments& arguments) {
+// What it ends with.
+Result<int> write_report(const ReportArguments& arguments) {
   std::vector<std::string> inputs = arguments.published;
   inputs.push_back(arguments.floors);
   PROBE_TRY(assets::check_output(arguments.out, inputs));
   PROBE_ASSIGN(const bool are_searches, report::are_searches(arguments.dirs));
-  if (are_searches) return write_search_report(arguments);
+  if (are_searches) {
+    PROBE_TRY(write_search_report(arguments));
+    return kFine;
+  }
   const report::ReportRequest request{.dirs = arguments.dirs,
                                       .sets = arguments.sets,
                                       .published = arguments.published,
@@ -86,14 +90,17 @@ Status write_report(const ReportArguments& arguments) {
         report::table_text(loaded.benchmark, loaded.tables, loaded.options.published,
                            *report::table_format(arguments.format));
     say_notes(loaded.benchmark.notes);
-    if (!arguments.out.empty()) return write_file(arguments.out, std::as_bytes(std::span(text)));
-    put("{}", text);
-    return {};
+    if (arguments.out.empty()) {
+      put("{}", text);
+    } else {
+      PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(text))));
+    }
+    return exit_of(loaded.benchmark);
   }
   report::EpisodeDocuments episodes = report::read_episodes(loaded, request);
   if (arguments.json) {
     put("{}\n", report::page_data(loaded.benchmark, loaded.tables, loaded.options).dump(1));
-    if (arguments.out.empty()) return {};
+    if (arguments.out.empty()) return exit_of(loaded.benchmark);
   }
   const std::string page = report::page_text(loaded, std::move(episodes));
   PROBE_TRY(write_file(arguments.out, std::as_bytes(std::span(page))));
@@ -101,7 +108,7 @@ Status write_report(const ReportArguments& arguments) {
   say("{}: {} {}, {} episodes, {:.1f} MB\n", arguments.out, loaded.benchmark.policies.size(),
       loaded.benchmark.policies.size() == 1 ? "policy" : "policies",
       loaded.benchmark.episodes.size(), static_cast<double>(page.size()) / 1e6);
-  return {};
+  return exit_of(loaded.benchmark);
 }
 
 int report_verb(ReportArguments& arguments) {
@@ -114,8 +121,8 @@ int report_verb(ReportArguments& arguments) {
   for (const std::string& path : arguments.published) arguments.command += " --with " + path;
   if (!arguments.floors.empty()) arguments.command += " --floors " + arguments.floors;
   if (!arguments.out.empty()) arguments.command += " -o " + arguments.out;
-  const Status status = write_report(arguments);
-  return status ? kFine : report(status.failure());
+  const auto exit = write_report(arguments);
+  return exit ? *exit : report(exit.failure());
 }
 
 }  // namespace

@@ -41,9 +41,16 @@ TEST_CASE("compare says in words what differs, report gives the tables, both ref
   std::filesystem::remove(box / "edited/traces/carrot_on_plate/1-42.trace");
   for (const char* form : {"", "--json"}) {
     const Outcome edited = box.vlaprobe(std::string("compare reach edited ") + form);
-    REQUIRE_MESSAGE(edited.exit == 0, edited.err);
+    REQUIRE_MESSAGE(edited.exit == 2, edited.err);
     CHECK(edited.err.find("carrot_on_plate episode 1 seed 42 is left out") != std::string::npos);
+    CHECK(!edited.out.empty());
   }
+  // As `results` ends there, whichever verb tells of rows.
+  CHECK(box.vlaprobe("results edited").exit == 2);
+  CHECK(box.vlaprobe("gate reach --against edited").exit == 2);
+  CHECK(box.vlaprobe("report reach edited -o edited.html").exit == 2);
+  CHECK(box.vlaprobe("report reach edited --format csv").exit == 2);
+  CHECK(std::filesystem::exists(box / "edited.html"));
   CHECK(words.err.find("left out") == std::string::npos);
 
   const Outcome csv = box.vlaprobe("report reach null --format csv");
