@@ -7,7 +7,7 @@
 # Exit 0: all equal, all refused.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
-episodes=${1:-6} vlaprobe=${2:-$here/build/vlaprobe}
+episodes=${1:-6} vlaprobe=$(realpath "$(command -v "${2:-$here/build/vlaprobe}")")  # it is called from other folders
 work=$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-determinism-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 export VLAPROBE_CACHE=$work/cache

@@ -6,7 +6,7 @@
 # without the scarcity has to come to the rows or bytes of one that lacked nothing. What needs root or faketime is skipped where that is not there, saying so. Exit 0: nothing found.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/../.." && pwd)
-rounds=${1:-20} vlaprobe=${2:-$here/build/vlaprobe}
+rounds=${1:-20} vlaprobe=$(realpath "$(command -v "${2:-$here/build/vlaprobe}")")  # it is called from other folders
 work=$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-scarce-XXXXXX")
 mounted=$work/disk
 stop() {

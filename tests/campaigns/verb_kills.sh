@@ -7,7 +7,7 @@
 set -eu
 here=$(cd "$(dirname "$0")/../.." && pwd)
 kills=${1:-200}
-vlaprobe=${2:-$here/build/vlaprobe}
+vlaprobe=$(realpath "$(command -v "${2:-$here/build/vlaprobe}")")  # it is called from other folders
 dir=$(mktemp -d "${TMPDIR:-/tmp}/vlaprobe-verbs-XXXXXX")
 trap 'rm -rf "$dir"' EXIT
 RANDOM=21
