@@ -72,12 +72,14 @@ inline bool is_own_name(const FolderRow& row, std::string_view name) {
 }
 
 // Before a folder is begun with, or gone on with, as of that kind. Fails (kStore, where = dir)
-// where it holds another.
+// where it holds another; one that may be beside a run or answers, as a sweep's own folders are, is
+// in no search's.
 inline Status check_holds_no_other(const std::string& dir, FolderKind kind) {
   const std::string wanted =
       (kind == FolderKind::kAnswers ? "" : "a ") + std::string(folder_row(kind).word);
   for (const FolderRow& row : folder_table()) {
     if (row.kind == kind || row.holds == nullptr || !holds(dir, row.kind)) continue;
+    if (folder_row(kind).holds == nullptr && row.kind != FolderKind::kSearch) continue;
     return Failure{Fault::kStore,
                    std::string("holds ") + row.holds + "; take another folder for " + wanted, dir};
   }

@@ -89,10 +89,22 @@ TEST_CASE("the best checkpoint on the original tasks runs the whole suite; of eq
   CHECK(json["checkpoints"].size() == 3);
   CHECK(json["checkpoints"][2]["folder"] == "0");
 
+  // A run beside the checkpoints' is none of the sweep's; a search's folder is a search's alone.
+  std::ofstream(folder / "sweep/results.sqlite") << "";
   const auto again = sweep(plan, options);
   REQUIRE_MESSAGE(again.ok(), to_text(again.failure()));
   CHECK(again->best == 1);
   CHECK(again->whole.done == 0);
+}
+
+TEST_CASE("no sweep is made in the folder of a search") {
+  TemporaryFolder folder;
+  const plan::Plan plan = two_tasks(folder);
+  fs::create_directories(folder / "found");
+  std::ofstream(folder / "found/search.json") << "{}";
+  const auto refused = sweep(plan, options_for(folder / "found"));
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().message == "holds a search; take another folder for a sweep");
 }
 
 TEST_CASE("INT-ACT checkpoints are switched on their server, each into its own folder") {
