@@ -6,6 +6,7 @@
 #include "runtime/ask/answers.h"
 #include "runtime/ask/merge.h"
 #include "runtime/ask/prepared.h"
+#include "runtime/base/large.h"
 #include "runtime/base/paths.h"
 #include "runtime/run/selection.h"
 
@@ -59,6 +60,7 @@ class AskWork final : public cluster::ArrayWork {
     if (options_.if_changed == run::IfChanged::kContinue)
       add_words(words, "--if-changed", "continue");
     if (options_.accepts_any_certificate) words.emplace_back("--insecure");
+    if (is_large_allowed()) words.emplace_back("--allow-large");
     return words;
   }
 

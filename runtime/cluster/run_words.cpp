@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "runtime/base/large.h"
 #include "runtime/base/paths.h"
 
 namespace probe::cluster {
@@ -31,6 +32,7 @@ std::vector<std::string> run_words(const run::RunOptions& options) {
   add("--give-up-after", std::to_string(options.give_up_after));
   if (options.if_changed == run::IfChanged::kContinue) add("--if-changed", "continue");
   if (options.accepts_any_certificate) words.push_back("--insecure");
+  if (is_large_allowed()) words.push_back("--allow-large");
   if (options.live) {
     if (options.live->delay_s) {
       char delay[40];

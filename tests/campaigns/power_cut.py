@@ -175,6 +175,7 @@ def campaign(name, verb, call, disk, out, calm, cuts):
         since_cut = 0
         disk.cut(chance)
         verb.look(out)
+        disk.settle()  # who looks at a database takes back what was half of it, and waits for the disk
     ended = subprocess.run(call, capture_output=True, text=True)
     if ended.returncode != 0:
         raise Found(f"{name} does not go on: {ended.stderr.strip()[-600:]}")
