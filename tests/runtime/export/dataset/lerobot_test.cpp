@@ -433,6 +433,11 @@ TEST_CASE("a dataset that was changed, or is of another run, does not pass its c
   with("meta/tasks.parquet", replace("carrot", "rabbit"));
   with("meta/tasks.parquet", replace("pandas", "panda_"));
   with("meta/stats.json", replace("\"count\"", "\"min\""));
+  CHECK(with("meta/stats.json", [](std::string& text) {
+          Json json = Json::parse(text);
+          json["timestamp"]["min"] = 0.0;  // no list of one
+          text = json.dump();
+        }).find("`timestamp`: min is not below q01") != std::string::npos);
   with(kVideo, [](std::string& bytes) { bytes.resize(bytes.size() / 2); });
   with("vlaprobe/demonstrations.jsonl", replace("\"trace_sha256\":\"", "\"trace_sha256\":\"0"));
   with("vlaprobe/demonstrations.jsonl", [](std::string& text) {
