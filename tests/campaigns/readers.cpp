@@ -52,8 +52,12 @@ struct Turn {
 Turn turn_of(std::uint64_t seed, const std::vector<Kind>& kinds) {
   const std::uint64_t round = seed / kinds.size();
   std::size_t kind = seed % kinds.size();
-  if (round % 64 >= 4 && !std::ranges::all_of(kinds, &Kind::waits)) {
-    for (std::uint64_t step = round; kinds[kind].waits; ++step) kind = (seed + step) % kinds.size();
+  if (kinds[kind].waits && round % 64 >= 4) {
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+      if (!kinds[i].waits) others.push_back(i);
+    }
+    if (!others.empty()) kind = others[(seed + round) % others.size()];
   }
   return {kind, round % 16 == 0};
 }
