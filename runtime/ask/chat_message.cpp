@@ -5,6 +5,7 @@
 #include "runtime/ask/reading/likely_letters.h"
 #include "runtime/base/json.h"
 #include "runtime/base/printable.h"
+#include "runtime/servers/api_key.h"
 #include "runtime/servers/transport.h"
 
 namespace probe::ask {
@@ -121,6 +122,14 @@ Result<Said> read_chat_answer(const ChatTerms& terms, std::string_view body,
   }
   said.usage.fingerprint = text_or_empty(json.find("system_fingerprint"));
   said.usage.finish = text_or_empty(choice.find("finish_reason"));
+  // A shorter key, as is given to servers that want none, may be a word of an answer.
+  constexpr std::size_t kLeastSecret = 8;
+  const std::string key = servers::api_key();
+  for (const std::string* words :
+       {&said.raw, &said.reasoning, &said.usage.fingerprint, &said.usage.finish}) {
+    if (key.size() >= kLeastSecret && words->find(key) != words->npos)
+      return final_answer("the answer holds the API key that was sent; it is kept nowhere");
+  }
   if (const Json* usage = json.find("usage"); usage != nullptr) {
     said.usage.prompt_tokens = count_of(usage->find("prompt_tokens"));
     said.usage.completion_tokens = count_of(usage->find("completion_tokens"));

@@ -4,10 +4,12 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <map>
 
 #include "runtime/ask/answers.h"
 #include "runtime/ask/ask.h"
+#include "runtime/ask/chat_message.h"
 #include "runtime/store/database.h"
 #include "tests/runtime/ask/asking_plan.h"
 #include "tests/runtime/run/temporary_folder.h"
@@ -39,6 +41,25 @@ std::vector<AnswerRow> answers_in(const std::string& dir) {
   auto rows = read_answers(dir);
   REQUIRE_MESSAGE(rows.ok(), to_text(rows.failure()));
   return *rows;
+}
+
+TEST_CASE("an answer that holds the key is kept nowhere; a short key is a word as any") {
+  const std::string body =
+      R"({"model": "m", "choices": [{"message": {"content": "A, Bearer s3cret-of-the-test"}}]})";
+  ChatTerms terms;
+  terms.model = "m";
+  const auto read_with = [&](const char* key) {
+    ::setenv("VLAPROBE_API_KEY", key, 1);
+    auto said = read_chat_answer(terms, body, "application/json", 2);
+    ::unsetenv("VLAPROBE_API_KEY");
+    return said;
+  };
+  const auto refused = read_with("s3cret-of-the-test");
+  REQUIRE_FALSE(refused.ok());
+  CHECK(refused.failure().code == Fault::kAnswered);
+  CHECK(to_text(refused.failure()).find("s3cret") == std::string::npos);
+  CHECK(read_with("A").ok());
+  CHECK(read_with("").ok());
 }
 
 TEST_CASE("a model that always says A is right in one order of three, and keeps what was sent") {
