@@ -16,7 +16,7 @@ bool is_large_allowed() { return is_allowed; }
 
 std::string large_hint() {
   if (is_allowed) return "";
-  return "; `--allow-large` allows " + std::to_string(kLargeFactor) + " times as much";
+  return "; `vlaprobe --allow-large` allows " + std::to_string(kLargeFactor) + " times as much";
 }
 
 }  // namespace probe

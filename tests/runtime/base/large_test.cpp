@@ -27,7 +27,7 @@ std::string where_allowed(const std::function<std::string()>& say) {
 
 TEST_CASE("a limit is what it is usually, until large files are allowed") {
   CHECK(allowed(10) == 10);
-  CHECK(large_hint() == "; `--allow-large` allows 8 times as much");
+  CHECK(large_hint() == "; `vlaprobe --allow-large` allows 8 times as much");
   CHECK(where_allowed([] { return std::to_string(allowed(10)) + large_hint(); }) == "80");
   constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
   CHECK(where_allowed([] { return std::to_string(allowed(kMost)); }) == std::to_string(kMost));

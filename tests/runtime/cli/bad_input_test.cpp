@@ -204,10 +204,10 @@ TEST_CASE(
   const std::string pack = "assets pack large.urdf -o out";
   const Outcome refused = box.vlaprobe(pack);
   CHECK(refused.exit == 2);
-  CHECK_MESSAGE(
-      contains(refused.err,
-               "has more than the 16 MiB that are read; `--allow-large` allows 8 times as much"),
-      refused.err);
+  CHECK_MESSAGE(contains(refused.err,
+                         "has more than the 16 MiB that are read; `vlaprobe --allow-large` allows "
+                         "8 times as much"),
+                refused.err);
   for (const std::string& line : {"--allow-large " + pack, pack + " --allow-large"}) {
     const Outcome read = box.vlaprobe(line);
     CHECK_MESSAGE(read.exit == 2, read.err);  // for what is in it
