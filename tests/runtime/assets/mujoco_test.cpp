@@ -15,6 +15,7 @@
 #include "runtime/assets/mujoco_folder.h"
 #include "runtime/assets/mujoco_thing.h"
 #include "runtime/base/file.h"
+#include "runtime/base/large.h"
 #include "runtime/mjcf/read.h"
 #include "runtime/plan/plan.h"
 #include "runtime/robot/urdf.h"
@@ -504,7 +505,8 @@ TEST_CASE("bad models are refused with what is wrong and where") {
   folder.write("cup.png", huge);
   CHECK(failure_of(folder, cup_options(folder)) ==
         "cup.xml:3: texture `cup.png`: the image has 9000 x 9000 pixels, at most 8192 a side are "
-        "read");
+        "read" +
+            large_hint());
   write_cup(folder,
             "<mujoco><worldbody><body><geom size=\"1\" contype=\"0\" "
             "conaffinity=\"0\"/></body></worldbody></mujoco>");
