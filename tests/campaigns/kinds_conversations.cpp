@@ -16,6 +16,7 @@
 #include "tests/campaigns/driver.h"
 #include "tests/campaigns/kinds.h"
 #include "tests/runtime/scene/mutate.h"
+#include "tests/servers/recorded_servers.h"
 
 namespace probe::campaign {
 namespace {
@@ -23,39 +24,15 @@ namespace {
 namespace fs = std::filesystem;
 using namespace servers;
 using scene::test::Dice;
+using test::kRecordedServers;
+using test::RecordedServer;
 using wire::Duration;
 
 constexpr Duration kPatient{10'000}, kShort{100};
 constexpr std::size_t kLargestAnswer = std::size_t{16} << 20;
 
-const fs::path& transcripts() {
-  static const fs::path folder = VLAPROBE_SOURCE_DIR "/tests/servers/transcripts";
-  return folder;
-}
-
-// Beside the address, as tests/runtime/servers/transcript_test.cpp asks.
-struct Recorded {
-  Protocol protocol;
-  const char *file, *options;
-};
-constexpr Recorded kRecorded[] = {
-    {Protocol::kOpenpi, "openpi", ""},
-    {Protocol::kRoboArena, "roboarena", ""},
-    {Protocol::kIntact, "intact", "&model=/m&profile=pi0_bridge"},
-    {Protocol::kStarVla, "starvla", ""},
-    {Protocol::kVlaEval, "vlaeval", ""},
-    {Protocol::kGr00t, "gr00t_n1.6", "&profile=gr00t_bridge&dialect=n1.6"},
-    {Protocol::kGr00t, "gr00t_n1.6_nested", "&profile=gr00t_bridge&dialect=n1.6_nested"},
-    {Protocol::kGr00t, "gr00t_n1.5", "&profile=gr00t_bridge&dialect=n1.5"},
-    {Protocol::kOpenVla, "openvla", "&profile=openvla_bridge"},
-    {Protocol::kOpenVla, "openvla_encoded", "&profile=openvla_bridge&dialect=encoded"},
-    {Protocol::kLeRobot, "lerobot",
-     "&type=smolvla&model=/m&device=cpu&action.form=delta&action.units=m_rad&action.rotation="
-     "vector&action.gripper=signed&action.threshold=none&chunk.length=2"}};
-
-std::string file_of(const Recorded& recorded) { return std::string(recorded.file) + ".transcript"; }
-const Recorded& recorded_as(const std::string& file) {
-  return *std::ranges::find_if(kRecorded, [&](const Recorded& r) { return file_of(r) == file; });
+const RecordedServer& recorded_as(const std::string& file) {
+  return *std::ranges::find(kRecordedServers, file, &RecordedServer::file);
 }
 
 Form form_of_frames(Protocol protocol) {
@@ -63,7 +40,8 @@ Form form_of_frames(Protocol protocol) {
   return protocol == Protocol::kLeRobot ? Form::kBytes : Form::kMsgpack;
 }
 
-Result<ServerChoice> choice_at(const std::string& port, const Recorded& recorded, bool is_patient) {
+Result<ServerChoice> choice_at(const std::string& port, const RecordedServer& recorded,
+                               bool is_patient) {
   const std::string wait = is_patient ? "10" : "0.1";
   PROBE_ASSIGN(ServerChoice choice,
                choose_server(recorded.protocol,
@@ -146,9 +124,9 @@ std::string damaged_transcript(const std::string& text, bool questions, std::uin
 void add_answers_of_protocols(std::vector<Kind>& kinds) {
   for (const Protocol protocol : all_protocols()) {
     std::vector<Sample> samples;
-    for (const Recorded& recorded : kRecorded) {
+    for (const RecordedServer& recorded : kRecordedServers) {
       if (recorded.protocol == protocol)
-        samples.push_back({file_of(recorded), text_of(transcripts() / file_of(recorded))});
+        samples.push_back({recorded.file(), text_of(recorded.path())});
     }
     kinds.push_back({row_of(protocol).word.data(), std::move(samples),
                      [](const Given& file) -> Status {
@@ -195,9 +173,9 @@ void add_streams(std::vector<Kind>& kinds) {
     kinds.push_back({carrier,
                      {{std::string(file) + ".transcript", ""}},
                      [](const Given& given) -> Status {
-                       const Recorded& recorded = recorded_as(given.name);
+                       const RecordedServer& recorded = recorded_as(given.name);
                        PROBE_ASSIGN(const Transcript said,
-                                    parse_transcript(text_of(transcripts() / given.name), ""));
+                                    parse_transcript(text_of(recorded.path()), ""));
                        PROBE_ASSIGN(const auto listener, play(said, "127.0.0.1", "0"));
                        const DamagingProxy proxy(listener->port(), damages_of(given.bytes));
                        PROBE_ASSIGN(const ServerChoice choice,

@@ -7,6 +7,7 @@
 #include "runtime/servers/conformance.h"
 #include "runtime/servers/protocol.h"
 #include "runtime/servers/served.h"
+#include "tests/servers/recorded_servers.h"
 
 namespace probe::servers {
 namespace {
@@ -62,31 +63,11 @@ TEST_CASE("a recorded conversation is played back as it was, on every protocol")
 }
 
 TEST_CASE("the projects' own serving code is asked as when it was recorded, and understood") {
-  struct Real {
-    Protocol protocol;
-    const char *file, *options;
-  };
-  constexpr Real kReal[] = {
-      {Protocol::kOpenpi, "openpi", ""},
-      {Protocol::kRoboArena, "roboarena", ""},
-      {Protocol::kIntact, "intact", "&model=/m&profile=pi0_bridge"},
-      {Protocol::kStarVla, "starvla", ""},
-      {Protocol::kVlaEval, "vlaeval", ""},
-      {Protocol::kGr00t, "gr00t_n1.6", "&profile=gr00t_bridge&dialect=n1.6"},
-      {Protocol::kGr00t, "gr00t_n1.6_nested", "&profile=gr00t_bridge&dialect=n1.6_nested"},
-      {Protocol::kGr00t, "gr00t_n1.5", "&profile=gr00t_bridge&dialect=n1.5"},
-      {Protocol::kOpenVla, "openvla", "&profile=openvla_bridge"},
-      {Protocol::kOpenVla, "openvla_encoded", "&profile=openvla_bridge&dialect=encoded"},
-      {Protocol::kLeRobot, "lerobot",
-       "&type=smolvla&model=/m&device=cpu&action.form=delta&action.units=m_rad&action.rotation="
-       "vector&action.gripper=signed&action.threshold=none&chunk.length=2"}};
-  for (const Real& real : kReal) {
-    CAPTURE(std::string(real.file));
-    const std::string path =
-        std::string(VLAPROBE_SOURCE_DIR "/tests/servers/transcripts/") + real.file + ".transcript";
-    const auto text = read_file(path);
+  for (const test::RecordedServer& real : test::kRecordedServers) {
+    CAPTURE(real.file());
+    const auto text = read_file(real.path());
     REQUIRE_MESSAGE(text.ok(), to_text(text.failure()));
-    const auto transcript = parse_transcript(*text, path);
+    const auto transcript = parse_transcript(*text, real.path());
     REQUIRE_MESSAGE(transcript.ok(), to_text(transcript.failure()));
     CHECK(transcript->protocol == real.protocol);
     std::vector<std::string> told;
