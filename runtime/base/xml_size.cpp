@@ -1,6 +1,9 @@
 #include "runtime/base/xml_size.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace probe {
 namespace {
@@ -53,7 +56,8 @@ class Scan {
   bool skip_name() {
     const std::size_t before = at_;
     while (at_ < text_.size() &&
-           (begins_name(text_[at_]) || std::string_view("-.:0123456789").find(text_[at_]) != std::string_view::npos))
+           (begins_name(text_[at_]) ||
+            std::string_view("-.:0123456789").find(text_[at_]) != std::string_view::npos))
       ++at_;
     return at_ > before;
   }
@@ -112,5 +116,20 @@ class Scan {
 }  // namespace
 
 XmlSize xml_size(std::string_view text) { return Scan(text).run(); }
+
+Status check_xml_size(std::string_view text, Fault code, const std::string& path,
+                      std::size_t* elements) {
+  // TinyXML recurses once a level, and so does who walks over a tree of it.
+  constexpr std::size_t kDeepest = 500, kMostAttributes = 100, kMostElements = 100'000;
+  const auto fail = [&](std::string message) { return Failure{code, std::move(message), path}; };
+  const XmlSize size = xml_size(text);
+  *elements += size.elements;
+  if (size.is_odd) return fail("a `<?` that is no declaration");
+  if (size.depth > kDeepest) return fail(fmt::format("elements nested deeper than {}", kDeepest));
+  if (size.attributes > kMostAttributes)
+    return fail(fmt::format("an element of more than {} attributes", kMostAttributes));
+  if (*elements > kMostElements) return fail(fmt::format("more than {} elements", kMostElements));
+  return {};
+}
 
 }  // namespace probe

@@ -4,7 +4,10 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
+
+#include "runtime/base/result.h"
 
 namespace probe {
 
@@ -19,7 +22,9 @@ struct XmlSize {
 
 XmlSize xml_size(std::string_view text);
 
-// More than any element of a robot, a model or a scene has.
-inline constexpr std::size_t kMostXmlAttributes = 100;
+// Fails with `code` where text asks more than any robot, model or scene does. `elements`: of the
+// texts that belong to it and were asked before; this one's are added.
+Status check_xml_size(std::string_view text, Fault code, const std::string& path,
+                      std::size_t* elements);
 
 }  // namespace probe

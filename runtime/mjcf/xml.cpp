@@ -15,9 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// TinyXML recurses once a level, and so does whoever walks over our tree.
-constexpr std::size_t kDeepest = 500;
-constexpr std::size_t kMostElements = 100'000;
 constexpr std::size_t kLongestText = std::size_t{64} << 20;
 
 class Reader {
@@ -69,17 +66,7 @@ class Reader {
     // TinyXML reads a C string and would not see what follows.
     if (text.find('\0') != text.npos)
       return Failure{Fault::kAsset, "not XML: a zero byte in it", path};
-    const auto fail = [&](std::string message) {
-      return Failure{Fault::kAsset, std::move(message), path};
-    };
-    const XmlSize size = xml_size(text);
-    elements_ += size.elements;
-    if (size.is_odd) return fail("a `<?` that is no declaration");
-    if (size.depth > kDeepest) return fail(fmt::format("elements nested deeper than {}", kDeepest));
-    if (size.attributes > kMostXmlAttributes)
-      return fail(fmt::format("an element of more than {} attributes", kMostXmlAttributes));
-    if (elements_ > kMostElements) return fail(fmt::format("more than {} elements", kMostElements));
-    return {};
+    return check_xml_size(text, Fault::kAsset, path, &elements_);
   }
 
   Result<Element> copy(const TiXmlElement& from, std::uint32_t file) {

@@ -17,11 +17,7 @@
 namespace probe::robot {
 namespace {
 
-// TinyXML recurses once a level; a text nested deeper than this is no robot and could exhaust the
-// stack.
-constexpr std::size_t kDeepest = 500;
-// A humanoid with hands has a hundred links of ten elements; reading takes the square of the links.
-constexpr std::size_t kMostElements = 100'000;
+// A humanoid with hands has a hundred links; reading takes the square of the links.
 constexpr std::size_t kMostLinks = 1024;
 
 class Scanner {
@@ -59,17 +55,8 @@ class Scanner {
   std::string at(int line) const { return fmt::format("{}:{}", path_, line); }
 
   Status check_size() const {
-    const auto fail = [&](std::string message) {
-      return Failure{Fault::kUrdf, std::move(message), path_};
-    };
-    const XmlSize size = xml_size(text_);
-    if (size.is_odd) return fail("a `<?` that is no declaration");
-    if (size.depth > kDeepest) return fail(fmt::format("elements nested deeper than {}", kDeepest));
-    if (size.elements > kMostElements)
-      return fail(fmt::format("more than {} elements", kMostElements));
-    if (size.attributes > kMostXmlAttributes)
-      return fail(fmt::format("an element of more than {} attributes", kMostXmlAttributes));
-    return {};
+    std::size_t elements = 0;
+    return check_xml_size(text_, Fault::kUrdf, path_, &elements);
   }
 
   Result<std::string> named(const TiXmlElement& e, const char* attribute) const {
