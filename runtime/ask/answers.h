@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/ask/reading/answer_row.h"
 #include "runtime/ask/ask_record.h"
+#include "runtime/ask/reading/answer_row.h"
 #include "runtime/base/folder_kind.h"
 #include "runtime/base/result.h"
 #include "runtime/plan/plan.h"

@@ -311,7 +311,8 @@ class LerobotCheck {
       for (std::size_t i = 0; i < feature.size(); ++i) {
         const auto number = [&](std::string_view name) -> double {
           const Json* values = of->find(name);
-          if (values == nullptr || !values->is_array() || values->size() != feature.size()) return NAN;
+          if (values == nullptr || !values->is_array() || values->size() != feature.size())
+            return NAN;
           const Json* value = values->begin() + i;
           while (value->is_array() && value->size() == 1) value = value->begin();
           return value->is_number() ? value->get<double>() : NAN;

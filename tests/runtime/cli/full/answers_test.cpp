@@ -13,8 +13,8 @@ using test::Outcome;
 using test::Sandbox;
 
 void change(const Sandbox& box, const std::string& sql) {
-  auto database = store::Database::open((box / "A/answers.sqlite").string(),
-                                        store::Database::Access::kWrite);
+  auto database =
+      store::Database::open((box / "A/answers.sqlite").string(), store::Database::Access::kWrite);
   REQUIRE(database.ok());
   const Status done = database->execute(sql.c_str());
   REQUIRE_MESSAGE(done.ok(), to_text(done.failure()));
@@ -27,7 +27,8 @@ bool repaints(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("answers that do not follow from what they hold are told by the exit code, in clean words") {
+TEST_CASE(
+    "answers that do not follow from what they hold are told by the exit code, in clean words") {
   const Sandbox box;
   ask::AskOptions options;
   options.model = "truth";
@@ -50,8 +51,9 @@ TEST_CASE("answers that do not follow from what they hold are told by the exit c
     CAPTURE(form);
     const Outcome results = box.vlaprobe(std::string("results A ") + form);
     CHECK(results.exit == 2);
-    CHECK(test::contains(results.out + results.err,
-                         "1 answer counts neither way: it is said to be invalid and holds an answer"));
+    CHECK(test::contains(
+        results.out + results.err,
+        "1 answer counts neither way: it is said to be invalid and holds an answer"));
     if (std::string(form).empty()) CHECK(!repaints(results.out));
     CHECK(!repaints(results.err));
   }
